@@ -15,7 +15,6 @@ constexpr int kMaxNewton = 30;
 constexpr double kSettled = 1e-8;  // Newton's rule ends below this last step in s
 // The same where the force is continuous, so that the square of the place's error counts.
 constexpr double kSweepSettled = 1e-5;
-constexpr int kFewRows = 8;  // rows of a column of as many lanes as are cleared one by one in the time of all
 
 /// Ones in so many lanes, zeros behind them.
 constexpr auto kFirstLanes = [] {
@@ -266,17 +265,6 @@ void KinkMoments::add_to_sweep(double end, int degree, int nodes, std::size_t pl
     double* column = columns + row_[idx_of(i)];
 #pragma GCC unroll 4
     for (int j = degree; j >= 0; --j, column += stride, moments -= kLanes) *column += *moments;
-  }
-}
-
-void KinkMoments::clear_rows(int degree, int stride, double* columns) const {
-  if (kFewRows * count_ > stride) {
-    for (int j = degree; j >= 0; --j, columns += stride) std::fill_n(columns, stride, 0.0);
-    return;
-  }
-  for (int i = 0; i < count_; ++i) {
-    double* column = columns + row_[idx_of(i)];
-    for (int j = degree; j >= 0; --j, column += stride) *column = 0.0;
   }
 }
 

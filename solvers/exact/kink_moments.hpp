@@ -42,8 +42,6 @@ class KinkMoments {
   /// nodes: of Gauss's rule, one of kSweepRules; place_terms: so many of theta's terms tell where it passes the knot.
   void add_to_sweep(double end, int degree, int nodes, std::size_t place_terms, int stride, double* columns);
   static constexpr std::array<int, 3> kSweepRules{4, 6, 8};
-  /// Zeros to where add_to_sweep() added.
-  void clear_rows(int degree, int stride, double* columns) const;
   /// The s, found by either, at which theta passes the knot of kink i.
   double place(int i) const { return place_[static_cast<std::size_t>(i)]; }
   const double* places() const { return place_.data(); }  ///< of all, in whole lanes

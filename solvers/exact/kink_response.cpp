@@ -112,21 +112,18 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   slopes_changed_ = true;
   const int stride = series_.stride(), degree = size_.degree;
   moments_.resize(idx((TaylorSeries::kMostSwept + 1) * stride),
-                  0.0);  // zeros but for what a sweep at hand adds
+                  0.0);
   const Rule rule =
       rule_for(size_.response, series_.rate() * series_.step() * end, kOfShare * share, size_.scale, end);
   loads_.expand_kinks(series_, rule.terms);
   kinks.add_to_sweep(end, degree, rule.nodes, rule.place_terms, stride, moments_.data());
+  if (laws_.active()) again_.assign(moments_.begin(), moments_.begin() + (degree + 1) * stride);
   series_.sweep(moments_.data(), degree);
   const bool holds = limited_ || find_limit(end, share - size_.rest, size_.scale);
   limited_ = true;
-  if (!holds || !corrects_ || uncorrected_ <= kOfInexact * share) {
-    kinks.clear_rows(degree, stride, moments_.data());
-    return found_ = holds;
-  }
-  laws_.add_changes(series_, degree, moments_.data());
-  series_.sweep(moments_.data(), degree);
-  std::fill(moments_.begin(), moments_.end(), 0.0);
+  if (!holds || !corrects_ || uncorrected_ <= kOfInexact * share) return found_ = holds;
+  laws_.add_changes(series_, degree, again_.data());
+  series_.sweep(again_.data(), degree);
   return found_ = true;
 }
 

@@ -87,7 +87,8 @@ class KinkResponse {
   double uncorrected_ = 0.0;
   double listed_to_ = 0.0, end_ = 0.0, limit_ = 1.0;
   Size size_;
-  LaneVector moments_;
+  LaneVector moments_;  // zeros between sweeps
+  LaneVector again_;    // the same for a second sweep
 };
 
 }  // namespace drev

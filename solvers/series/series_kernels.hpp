@@ -20,6 +20,7 @@ inline constexpr auto kInverse = [] {
 struct DiagonalView {
   int offset;
   const double* values;
+  int only = -1;  ///< in a block of rows: the column of its entry there, where it has only one
 };
 
 /// The diagonals that have entries in each block of kLanes rows: views[begin[i]] to views[begin[i + 1] - 1] of
@@ -43,7 +44,7 @@ struct SeriesRecursion {
   BlockDiagonals k, c;     ///< c.views: null where c_main is C, or where there is none
   const double* c_main;    ///< C, where it has a main diagonal alone; else null
   const double* mobility;  ///< h^2 M^-1 by rows
-  const double* p;         ///< P_k at p + (k - p_first) stride, k = p_first ... p_degree; none above
+  double* p;               ///< P_k at p + (k - p_first) stride, k = p_first ... p_degree; none above
   int p_first, p_degree;
   double* z;  ///< Z_k at z + k stride
   /// The diagonals below, on and above the main one, where k and c have the others alone; null: k and c have all.
@@ -57,7 +58,7 @@ struct SeriesRecursion {
 };
 
 /// Z_k for k = first ... last, and, of a series, the largest |Z_k| of each in sizes from 0 on; the last two are not finite if any
-/// of the terms is not. Derivatives have no sizes.
+/// of the terms is not. Derivatives have no sizes, and leave P zero.
 void series_terms(const SeriesRecursion& recursion, int first, int last, double* sizes);
 
 /// out_i = factor a_i b_i.

@@ -11,7 +11,7 @@ bool TaylorSeries::sweeps() const {
                       [](const TermForces* forces) { return forces->active() && !forces->sweeps(); });
 }
 
-void TaylorSeries::sweep(const double* moments, int degree) {
+void TaylorSeries::sweep(double* moments, int degree) {
   swept_.resize(idx(2 * pad_ + (kMostSwept + 3) * stride_));
   swept_degree_ = degree;
   scale_step();
@@ -21,10 +21,9 @@ void TaylorSeries::sweep(const double* moments, int degree) {
   r.p_degree = degree;
   r.z = swept_.data() + idx(pad_);
   products_ += degree + 1;
-  if (by_kernel())
-    series_terms(r, 2, degree + 2, nullptr);
-  else
-    for (int k = 2; k <= degree + 2; ++k) product_term(r, k);
+  if (by_kernel()) return series_terms(r, 2, degree + 2, nullptr);
+  for (int k = 2; k <= degree + 2; ++k) product_term(r, k);
+  std::fill_n(moments, idx((degree + 1) * stride_), 0.0);
 }
 
 double TaylorSeries::coupling(int row, int other) const {

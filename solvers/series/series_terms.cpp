@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <type_traits>
 
 #include "solvers/linear/lane_pair.hpp"
 #include "solvers/series/series_kernels.hpp"
@@ -13,7 +14,8 @@ namespace drev {
 
 namespace {
 
-[[gnu::always_inline]] inline const double* term_of(const double* first, int stride, int k) {
+template <class Double>
+[[gnu::always_inline]] inline Double* term_of(Double* first, int stride, int k) {
   return first + static_cast<std::ptrdiff_t>(k) * stride;
 }
 
@@ -22,13 +24,14 @@ namespace {
 
 /// Runs Body::term<L, kForces>(m, p, largest) for the terms first ... last, where p is P_{m-2} if there is one (kForces). Of a
 /// series with their sizes; of a sweep (derivatives), whose terms tell nothing by their sizes, without.
-template <class Body, class L>
-[[gnu::always_inline]] inline void all_terms(const Body& body, int first, int last, double* sizes) {
+template <class L, class Body>
+[[gnu::always_inline]] inline void all_terms(Body&& body, int first, int last, double* sizes) {
+  constexpr bool kSweep = std::remove_reference_t<Body>::kSweep;
   const SeriesRecursion& r = body.r;
   const auto size = [&](int m) -> double& { return sizes[m - first]; };
   const auto finish = [&](int m, L& largest) __attribute__((always_inline)) {
     end_term();
-    if constexpr (Body::kSweep) return;
+    if constexpr (kSweep) return;
     double* term = r.z + static_cast<std::ptrdiff_t>(m) * r.stride;
     if (r.hook.add != nullptr && r.hook.add(r.hook.of, m, term)) {
       largest = L{};
@@ -38,6 +41,7 @@ template <class Body, class L>
         magnitude(x);
         raise(largest, x);
       }
+      body.take_back(m);
     }
     size(m) = largest_of(largest);
   };
@@ -52,7 +56,7 @@ template <class Body, class L>
     body.template term<L, false>(m, nullptr, largest);
     finish(m, largest);
   }
-  if constexpr (!Body::kSweep) {
+  if constexpr (!kSweep) {
     // Comparisons drop a NaN, but what is not finite in one term stays so in those behind it.
     for (m = last > first ? last - 1 : last; m <= last; ++m) {
       L not_finite{}, x;
@@ -75,13 +79,14 @@ template <bool kSweep, class L>
   }
 }
 
-/// sum += mobility p.
-template <class L>
-[[gnu::always_inline]] inline void add_right_side(const double* mobility, const double* p, int i, L& sum) {
+/// sum += mobility p; a sweep leaves p zero.
+template <bool kSweep, class L>
+[[gnu::always_inline]] inline void add_right_side(const double* mobility, double* p, int i, L& sum) {
   L force, w;
   load(p + i, force);
   load(mobility + i, w);
   sum += w * force;
+  if constexpr (kSweep) store(L{}, p + i);
 }
 
 /// Terms where K and C have any diagonals.
@@ -89,8 +94,9 @@ template <bool kOfSweep>
 struct Diagonals {
   static constexpr bool kSweep = kOfSweep;
   const SeriesRecursion r;  // a copy, which stores to columns cannot change
+  static void take_back(int) {}
   template <class L, bool kForces>
-  [[gnu::always_inline]] void term(int m, const double* p, L& largest) const {
+  [[gnu::always_inline]] void term(int m, double* p, L& largest) const {
     const double factor = r.factor(m), c_factor = r.damping_factor(m);
     const double *x_0 = term_of(r.z, r.stride, m - 2), *x_1 = term_of(r.z, r.stride, m - 1);
     double* next = r.z + static_cast<std::ptrdiff_t>(m) * r.stride;
@@ -113,7 +119,7 @@ struct Diagonals {
           damping += a * b;
         }
       }
-      if constexpr (kForces) add_right_side(r.mobility, p, i, sum);
+      if constexpr (kForces) add_right_side<kSweep>(r.mobility, p, i, sum);
       sum = factor * (sum + c_factor * damping);
       finish_term<kSweep>(sum, next + i, largest);
     }
@@ -121,15 +127,28 @@ struct Diagonals {
   template <class L>
   [[gnu::always_inline]] static void run(const SeriesRecursion* recursion, int first, int last,
                                          double* sizes) {
-    all_terms<Diagonals, L>({*recursion}, first, last, sizes);
+    all_terms<L>(Diagonals{*recursion}, first, last, sizes);
   }
 };
 
-/// What a chain has beside its neighbours' entries: nothing, and C has its main diagonal alone; the same with one view in a block
-/// of lanes at most; or any.
-enum class Beside { nothing, single_views, any };
+/// sum = a x, a's diagonals below, on and above the main one.
+template <class L>
+[[gnu::always_inline]] inline void multiply_chain(const std::array<const double*, 3>& a, int i, const L& up,
+                                                  const L& x, const L& down, L& sum) {
+  L value;
+  load(a[1] + i, value);
+  sum = value * x;
+  load(a[0] + i, value);
+  sum += value * up;
+  load(a[2] + i, value);
+  sum += value * down;
+}
 
-/// The same where K and C have their entries on the main diagonal and beside it, with a few elsewhere (k.views, c.views): the
+/// What a chain has beside its neighbours' entries: nothing, and C has its main diagonal alone; the same with one entry in a block of
+/// lanes at most; or any.
+enum class Beside { nothing, single_entries, any };
+
+/// Terms where K and C have their entries on the main diagonal and beside it, with a few elsewhere (k.views, c.views): the
 /// neighbours come from the lanes beside, so that no load overlaps what was stored just before. kBlocks: of lanes in a column,
 /// where that is known, so that loops over them are unrolled; 0: any number.
 template <bool kOfSweep, int kBlocks, Beside kBeside>
@@ -139,23 +158,12 @@ struct Chain {
   const SeriesRecursion r;                        // a copy, which stores to columns cannot change
   std::array<DiagonalView, kBlocks> single = {};  // values null: none in the block
   explicit Chain(const SeriesRecursion& recursion) : r(recursion) {
-    if constexpr (kBeside == Beside::single_views)
+    if constexpr (kBeside == Beside::single_entries)
       for (int b = 0; b < kBlocks; ++b)
         if (const DiagonalView* view = r.k.views + r.k.begin[b]; r.k.begin[b + 1] > r.k.begin[b])
           single[idx(b)] = {b * kLanes + view->offset, view->values + b * kLanes};
   }
-  /// sum = a x, a's diagonals below, on and above the main one.
-  template <class L>
-  [[gnu::always_inline]] static void multiply(const std::array<const double*, 3>& a, int i, const L& up,
-                                              const L& x, const L& down, L& sum) {
-    L value;
-    load(a[1] + i, value);
-    sum = value * x;
-    load(a[0] + i, value);
-    sum += value * up;
-    load(a[2] + i, value);
-    sum += value * down;
-  }
+  static void take_back(int) {}
   /// sum += the entries elsewhere.
   template <class L>
   [[gnu::always_inline]] static void add_far(const BlockDiagonals& far, int block, const double* x, L& sum) {
@@ -167,7 +175,7 @@ struct Chain {
     }
   }
   template <class L, bool kForces>
-  [[gnu::always_inline]] void term(int m, const double* p, L& largest) const {
+  [[gnu::always_inline]] void term(int m, double* p, L& largest) const {
     const int stride = kBlocks > 0 ? kBlocks * kLanes : r.stride;
     const double factor = kSweep ? 1.0 : r.factor(m), c_factor = kSweep ? 1.0 : r.damping_factor(m);
     const double *x_0 = term_of(r.z, stride, m - 2), *x_1 = term_of(r.z, stride, m - 1);
@@ -184,9 +192,9 @@ struct Chain {
       if (more) load(x_0 + i + kLanes, behind);
       move_up(before, x, up);
       move_down(x, behind, down);
-      multiply(r.k_chain, i, up, x, down, sum);
+      multiply_chain(r.k_chain, i, up, x, down, sum);
       if constexpr (kBeside == Beside::any) add_far(r.k, block, x_0, sum);
-      if constexpr (kBeside == Beside::single_views)
+      if constexpr (kBeside == Beside::single_entries)
         if (const DiagonalView& view = single[idx(block)]; view.values != nullptr) {
           L a, b;
           load(view.values, a);
@@ -199,7 +207,7 @@ struct Chain {
         if (more) load(x_1 + i + kLanes, rate_behind);
         move_up(rate_before, rate, up);
         move_down(rate, rate_behind, down);
-        multiply(r.c_chain, i, up, rate, down, damping);
+        multiply_chain(r.c_chain, i, up, rate, down, damping);
         add_far(r.c, block, x_1, damping);
         sum += c_factor * damping;
         rate_before = rate;
@@ -211,31 +219,89 @@ struct Chain {
         if constexpr (!kSweep) value = c_factor * value;
         sum += value * rate;
       }
-      if constexpr (kForces) add_right_side(r.mobility, p, i, sum);
+      if constexpr (kForces) add_right_side<kSweep>(r.mobility, p, i, sum);
       if constexpr (!kSweep) sum = factor * sum;
       finish_term<kSweep>(sum, next + i, largest);
       before = x;
       x = behind;
     }
   }
+};
+
+/// The same of so few blocks that two terms stay in registers of 64 bytes: to load all that a term needs would take longer than its
+/// sums.
+template <bool kOfSweep, int kBlocks, Beside kBeside, class L>
+struct ShortChain {
+  static constexpr bool kSweep = kOfSweep;
+  const SeriesRecursion r;           // a copy, which stores to columns cannot change
+  L older[kBlocks], newer[kBlocks];  // the last two terms
+  ShortChain(const SeriesRecursion& recursion, int first) : r(recursion) {
+    take(first - 2, older);
+    take(first - 1, newer);
+  }
+  [[gnu::always_inline]] void take(int m, L (&term)[kBlocks]) const {
+#pragma GCC unroll 6
+    for (int b = 0; b < kBlocks; ++b) load(term_of(r.z, kBlocks * kLanes, m) + b * kLanes, term[b]);
+  }
+  /// Term m, the last one, was changed in memory.
+  [[gnu::always_inline]] void take_back(int m) { take(m, newer); }
+  template <class, bool kForces>
+  [[gnu::always_inline]] void term(int m, double* p, L& largest) {
+    const double factor = kSweep ? 1.0 : r.factor(m), c_factor = kSweep ? 1.0 : r.damping_factor(m);
+    double* next = term_of(r.z, kBlocks * kLanes, m);
+    const double* x_0 = term_of(r.z, kBlocks * kLanes, m - 2);
+    L before{};
+#pragma GCC unroll 6
+    for (int b = 0; b < kBlocks; ++b) {
+      const int i = b * kLanes;
+      L up, down, sum, value;
+      move_up(before, older[b], up);
+      move_down(older[b], b + 1 < kBlocks ? older[(b + 1) % kBlocks] : L{}, down);
+      multiply_chain(r.k_chain, i, up, older[b], down, sum);
+      // One by one: a load of lanes would overlap what was stored just before.
+      if constexpr (kBeside == Beside::single_entries)
+        for (int d = r.k.begin[b]; d < r.k.begin[b + 1]; ++d) {
+          load(r.k.views[d].values + i, value);
+          sum += x_0[r.k.views[d].only] * value;
+        }
+      load(r.c_main + i, value);
+      if constexpr (!kSweep) value = c_factor * value;
+      sum += value * newer[b];
+      if constexpr (kForces) add_right_side<kSweep>(r.mobility, p, i, sum);
+      if constexpr (!kSweep) sum = factor * sum;
+      before = older[b];
+      older[b] = newer[b];
+      newer[b] = sum;
+      finish_term<kSweep>(sum, next + i, largest);
+    }
+  }
+};
+template <bool kSweep, int kBlocks, Beside kBeside>
+struct ChainTerms {
   template <class L>
   [[gnu::always_inline]] static void run(const SeriesRecursion* recursion, int first, int last,
                                          double* sizes) {
-    all_terms<Chain, L>(Chain(*recursion), first, last, sizes);
+    if constexpr (kBlocks > 0 && kBeside != Beside::any && std::is_same_v<L, Lanes>)
+      all_terms<L>(ShortChain<kSweep, kBlocks, kBeside, L>(*recursion, first), first, last, sizes);
+    else
+      all_terms<L>(Chain<kSweep, kBlocks, kBeside>(*recursion), first, last, sizes);
   }
 };
 
 template <bool kSweep, int kBlocks>
 void run_chain(const SeriesRecursion* r, int first, int last, double* sizes) {
-  const int blocks = r->stride / kLanes;
-  if (r->c_main == nullptr) return run_widest<Chain<kSweep, kBlocks, Beside::any>>(r, first, last, sizes);
-  if (r->k.begin[blocks] == 0)
-    return run_widest<Chain<kSweep, kBlocks, Beside::nothing>>(r, first, last, sizes);
+  const int blocks = r->stride / kLanes, *begin = r->k.begin;
+  const auto run = [&]<Beside kBeside>() {
+    run_widest<ChainTerms<kSweep, kBlocks, kBeside>>(r, first, last, sizes);
+  };
+  if (r->c_main == nullptr) return run.template operator()<Beside::any>();
+  if (begin[blocks] == 0) return run.template operator()<Beside::nothing>();
   if constexpr (kBlocks > 0)
-    if (std::adjacent_find(r->k.begin, r->k.begin + blocks + 1, [](int a, int b) { return b > a + 1; }) ==
-        r->k.begin + blocks + 1)
-      return run_widest<Chain<kSweep, kBlocks, Beside::single_views>>(r, first, last, sizes);
-  run_widest<Chain<kSweep, kBlocks, Beside::any>>(r, first, last, sizes);
+    if (std::adjacent_find(begin, begin + blocks + 1, [](int a, int b) { return b > a + 1; }) ==
+            begin + blocks + 1 &&
+        std::all_of(r->k.views, r->k.views + begin[blocks], [](const auto& view) { return view.only >= 0; }))
+      return run.template operator()<Beside::single_entries>();
+  run.template operator()<Beside::any>();
 }
 
 template <bool kSweep>

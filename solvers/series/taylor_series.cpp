@@ -122,13 +122,17 @@ void TaylorSeries::find_views(bool far) {
   for (int begin = 0; begin < stride_; begin += kLanes) {
     for (const Diagonal& d : diagonals_) {
       if (far && std::abs(d.offset) <= 1) continue;
-      bool any = false;
+      int entries = 0, column = -1;
       for (int row = begin; row < std::min(begin + kLanes, n_); ++row)
-        for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s)
-          any |= p.innerIndexPtr()[s] - row == d.offset;
-      if (!any) continue;
-      k_views_.push_back({d.offset, k_.step.data() + d.values});
-      c_views_.push_back({d.offset, c_.step.data() + d.values});
+        for (int s = p.outerIndexPtr()[row]; s < p.outerIndexPtr()[row + 1]; ++s) {
+          if (p.innerIndexPtr()[s] - row != d.offset) continue;
+          ++entries;
+          column = p.innerIndexPtr()[s];
+        }
+      if (entries == 0) continue;
+      const int only = entries == 1 ? column : -1;
+      k_views_.push_back({d.offset, k_.step.data() + d.values, only});
+      c_views_.push_back({d.offset, c_.step.data() + d.values, only});
     }
     block_begin_.push_back(static_cast<int>(k_views_.size()));
   }

@@ -109,9 +109,9 @@ class TaylorSeries {
 
   /// The motion y that forces f on the unknowns, on top of the right side, add up to s = e, by one backward
   /// sweep: (y, y') = sum_j A^j (0, h^2 M^-1 W_j), W_j = int (e - s)^j/j! f ds,
-  /// A (y, u) = (u, -h^2 M^-1 K y - h M^-1 C u), with the tangents that stand now. moments: W_degree ... W_0, a column each.
+  /// A (y, u) = (u, -h^2 M^-1 K y - h M^-1 C u), with the tangents that stand now. moments: W_degree ... W_0, a column each, which are zero then.
   /// Only where sweeps() holds. Source: variation of constants, with exp(A (e - s)) as its Taylor series.
-  void sweep(const double* moments, int degree);
+  void sweep(double* moments, int degree);
   bool sweeps() const;
   static constexpr int kMostSwept = 28;  ///< largest degree of a sweep
   /// Results of sweep(): y' by s (part = -1), y (0), and int (e - s)^(k-1)/(k-1)! y ds (part = k, up to the degree less 2).
