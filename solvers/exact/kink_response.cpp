@@ -276,22 +276,25 @@ KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) {
 
 /// A bound of error_of_others() over h^2 where each kink has a row of its own: neighbours by their couplings, and all as if they
 /// were two rows apart.
-double KinkResponse::bound_of_rows_apart(double end, double beside, double apart) const {
+double KinkResponse::bound_of_rows_apart(double end, double beside, double apart) {
   const KinkMoments& kinks = loads_.kinks();
   const double *gain = loads_.kink_sizes().gain(), *pull = loads_.kink_sizes().pull();
   double sum = apart * run_widest<RowsApart>(kinks.count(), end, kinks.places(), pull, gain);
+  on_row_.resize(idx(series_.stride()));
+  for (int i = 0; i < kinks.count(); ++i) on_row_[idx(kinks.row(i))] = {kinks.place(i), pull[i]};
   for (int i = 0; i < kinks.count(); ++i) {
+    const int row = kinks.row(i);
     const double place = kinks.place(i);
-    if (place >= end) continue;
     double of_neighbours = 0.0;
-    series_.for_coupled(kinks.row(i), [&](int row, double coupling) {
-      const int k = loads_.kink_on(row);
-      if (k < 0) return;
-      const double d = std::max(0.0, place - kinks.place(k)), d_2 = d * d;
-      of_neighbours += coupling * pull[k] * (d_2 * d_2 * d_2);
+    series_.for_row(row, [&](int other, double stiffness) {
+      const auto& beside_it = on_row_[idx(other)];
+      // max(0, ahead) without a branch: no processor can foretell which of the two comes first.
+      const double ahead = place - beside_it.place, d = 0.5 * (ahead + std::abs(ahead)), d_2 = d * d;
+      of_neighbours += stiffness * beside_it.pull * (d_2 * d_2 * d_2);
     });
-    sum += gain[i] * beside * of_neighbours;
+    sum += (place < end ? beside * gain[i] * series_.mobility(row) : 0.0) * of_neighbours;
   }
+  for (int i = 0; i < kinks.count(); ++i) on_row_[idx(kinks.row(i))] = {};
   return sum;
 }
 

@@ -67,7 +67,7 @@ class KinkResponse {
     double between = 0.0;  // s between the two kinks that make most of it
   };
   Others error_of_others(double end, double allowed);
-  double bound_of_rows_apart(double end, double beside, double apart) const;
+  double bound_of_rows_apart(double end, double beside, double apart);
   Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change, double enough) const;
   Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change, bool by_nearness) const;
   double nearness(int row, const ScalarTerm& law, double d) const;
@@ -87,6 +87,10 @@ class KinkResponse {
   double uncorrected_ = 0.0;
   double listed_to_ = 0.0, end_ = 0.0, limit_ = 1.0;
   Size size_;
+  struct OnRow {
+    double place = 0.0, pull = 0.0;
+  };
+  std::vector<OnRow> on_row_;  // of the kink on each row, while they are bounded; zeros: none
   LaneVector moments_;  // zeros between sweeps
   LaneVector again_;    // the same for a second sweep
 };

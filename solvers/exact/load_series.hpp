@@ -89,8 +89,6 @@ class LoadSeries {
   /// Some of them are on one row.
   bool kinks_share_rows() const { return shared_rows_; }
   const KinkSizes& kink_sizes() const { return kink_sizes_; }
-  /// The kink listed last on a row; -1: none.
-  int kink_on(int row) const { return std::max(last_kink_[idx(row)] - listed_before_, 0) - 1; }
   /// Work up to s of the kinks' forces, and of all others on the motion that they add [J].
   double kink_work(const TaylorSeries& series, double s) const;
   /// Kinks are all that bends loads beyond the series.

@@ -170,12 +170,11 @@ class TaylorSeries {
   }
   /// |k| between two unknowns over the first one's mass [1/s^2].
   double coupling(int row, int other) const;
-  /// Calls each(other, coupling(row, other)) for every unknown that is coupled with a row.
+  /// Calls each(other, |k|) for every unknown in a row of the stiffness matrix, its own included.
   template <class Each>
-  void for_coupled(int row, const Each& each) const {
+  void for_row(int row, const Each& each) const {
     const int *outer = system_.pattern().outerIndexPtr(), *inner = system_.pattern().innerIndexPtr();
-    for (int s = outer[row]; s < outer[row + 1]; ++s)
-      if (inner[s] != row) each(inner[s], std::abs(k_.now[position_[idx(s)]]) * mobility(row));
+    for (int s = outer[row]; s < outer[row + 1]; ++s) each(inner[s], std::abs(k_.now[position_[idx(s)]]));
   }
   /// Whether some third one is coupled with both.
   bool share_neighbour(int row, int other) const;
