@@ -16,13 +16,45 @@ constexpr double kSettled = 1e-8;  // Newton's rule ends below this last step in
 // The same where the force is continuous, so that the square of the place's error counts.
 constexpr double kSweepSettled = 1e-5;
 
-/// Ones in so many lanes, zeros behind them.
-constexpr auto kFirstLanes = [] {
-  std::array<double, 2 * kLanes> ones{};
-  for (std::size_t i = 0; i < kLanes; ++i) ones[i] = 1.0;
-  return ones;
-}();
-const double* first_lanes(int count) { return kFirstLanes.data() + kLanes - std::min(count, kLanes); }
+/// A kink's knot and the angle at the end; in lanes without one, 0 and 1, where theta = s.
+template <class L>
+[[gnu::always_inline]] inline void load_turn(const double* knot, const double* end, const L& kinks, L& target,
+                                             L& at_end) {
+  load(knot, target);
+  load(end, at_end);
+  target *= kinks;
+  at_end = at_end * kinks + (1.0 - kinks);
+}
+
+/// turn Z_k + ratio phi_k of kLanes kinks.
+struct Angles {
+  template <class L>
+  [[gnu::always_inline]] static void run(const int* row, const double* kinks, const double* angle,
+                                         const double* ratio, const double* turn, const double* columns,
+                                         int stride, std::size_t known, std::size_t terms, double phi_1,
+                                         double phi_2, double* theta) {
+    L are, from, by, x;
+    load(kinks, are);
+    load(angle, from);
+    load(turn, by);
+    by *= are;
+    store(are * from, theta);
+    const double* column = columns + stride;
+    for (std::size_t k = 1; k < known; ++k, column += stride) {
+      gather(column, row, x);
+      store(by * x, theta + k * kLanes);
+    }
+    for (std::size_t k = known; k < terms; ++k) store(L{}, theta + k * kLanes);
+    load(ratio, by);
+    by *= are;
+    load(theta + kLanes, x);
+    x += phi_1 * by + (1.0 - are);
+    store(x, theta + kLanes);
+    load(theta + 2 * kLanes, x);
+    x += phi_2 * by;
+    store(x, theta + 2 * kLanes);
+  }
+};
 
 /// s where theta = target, from the line between 0 and `end`, where theta is at_end. By Newton's rule, within [0, end], until
 /// `lanes` of them settle.
@@ -88,8 +120,8 @@ struct Moments {
                                          const double* end, const double* nodes, const double* weights,
                                          double* place, double* moments) {
     L target, at_end, s;
-    load(knot, target);
-    load(end, at_end);
+    load(lanes, s);
+    load_turn(knot, end, s, target, at_end);
     find_place(theta, terms, lanes, target, at_end, 1.0, kSettled, s);
     store(s, place);
     L sum[kProjectionTerms];
@@ -132,8 +164,8 @@ struct SweepMoments {
                                          const double* nodes, const double* weights, int degree,
                                          double* place, double* moments) {
     L target, at_end, s;
-    load(knot, target);
-    load(end, at_end);
+    load(lanes, s);
+    load_turn(knot, end, s, target, at_end);
     find_place(theta, place_terms, lanes, target, at_end, s_end, kSweepSettled, s);
     store(s, place);
     const L rest = s_end - s;
@@ -185,13 +217,66 @@ struct SweepRule : NodesAndWeights<kNodes> {
 
 }  // namespace
 
+struct KinkMoments::Work {
+  template <class L>
+  [[gnu::always_inline]] static double run(const KinkMoments* kinks, double rate, double bend,
+                                           const double* y, const double* y_sum, const double* y_sum_2) {
+    L sum{};
+    for (int i = 0; i < kinks->count_; i += kLanes) {
+      const auto at = [&](Quantity q) __attribute__((always_inline)) { return kinks->table_.at(q) + i; };
+      const int* row = kinks->row_.data() + i;
+      L behind, knot, turn, x, along, along_2;
+      load(at(kTurn), turn);
+      load(at(kEnd), behind);
+      load(at(kKnot), knot);
+      gather(y, row, x);
+      behind = behind - knot + turn * x;
+      const double* force = kinks->force_.data() + idx_of(i) / kLanes * kForce;
+      L slope{}, integral{};
+      for (std::size_t q = kinks->powers_; q-- > 0;) {
+        load(force + q * kLanes, x);
+        slope = slope * behind + static_cast<double>(q + 1) * x;
+        integral = integral * behind + (1.0 / static_cast<double>(q + 2)) * x;
+      }
+      slope *= turn;
+      const double* moments = kinks->sweep_moments_.data() + idx_of(i) * idx_of(kinks->degree_ + 1);
+      load(moments, along);
+      gather(y_sum, row, x);
+      along += slope * x;
+      load(moments + kLanes, along_2);
+      gather(y_sum_2, row, x);
+      along_2 += slope * x;
+      load(at(kRatio), x);
+      x = integral * (behind * behind) - x * (rate * along - bend * along_2);
+      load(at(kPerTurn), turn);
+      load(first_lanes(kinks->count_ - i), along);
+      sum += (along * turn) * x;
+    }
+    return sum_of(sum);
+  }
+};
+
+double KinkMoments::work(double rate, double bend, const double* y, const double* y_sum,
+                         const double* y_sum_2) const {
+  return run_widest<Work>(this, rate, bend, y, y_sum, y_sum_2);
+}
+
 void KinkMoments::make_room() {
-  const std::size_t room = row_.size() + kLanes;
-  row_.resize(room);
-  for (auto* list : {&knot_, &end_, &place_}) list->resize(room);
-  theta_.resize(room * kMostTerms);
-  force_.resize(room * kMostPowers);
-  std::fill_n(theta_.end() - kGroup + kLanes, kLanes, 1.0);  // lanes without a kink have a place, too
+  table_.make_room();
+  row_.resize(table_.room());
+  theta_.resize(table_.room() * kMostTerms);
+  force_.resize(table_.room() * kMostPowers);
+}
+
+void KinkMoments::expand(const double* columns, int stride, std::size_t known, std::size_t terms,
+                         const std::array<double, 3>& phi) {
+  terms_ = terms;
+  for (int i = 0; i < count_; i += kLanes)
+    run_widest<Angles>(static_cast<const int*>(row_.data() + i), first_lanes(count_ - i),
+                       static_cast<const double*>(table_.at(kAngle) + i),
+                       static_cast<const double*>(table_.at(kRatio) + i),
+                       static_cast<const double*>(table_.at(kTurn) + i), columns, stride, known, terms,
+                       phi[1], phi[2], theta_.data() + idx_of(i) / kLanes * kGroup);
 }
 
 /// The terms of a force behind its first one.
@@ -203,7 +288,7 @@ void KinkMoments::add_powers(std::size_t i, double factor, std::span<const doubl
 }
 
 KinkMoments::Force KinkMoments::force(int i, double behind) const {
-  const double* terms = force_.data() + idx_of(i) / kLanes * kForce + lane_of(i);
+  const double* terms = force_.data() + idx_of(i) / kLanes * kForce + idx_of(i) % kLanes;
   Force f;
   for (std::size_t q = powers_; q-- > 0;) {
     const double term = terms[q * kLanes];
@@ -223,10 +308,10 @@ void KinkMoments::add_to(LegendreProjection& projection) {
   for (int first = 0; first < count_; first += kLanes) {
     const auto at = static_cast<std::size_t>(first);
     run_widest<Moments>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
-                        first_lanes(count_ - first), static_cast<const double*>(knot_.data() + at),
+                        first_lanes(count_ - first), static_cast<const double*>(table_.at(kKnot) + at),
                         static_cast<const double*>(force_.data() + at / kLanes * kForce), powers_,
-                        static_cast<const double*>(end_.data() + at), rule.nodes.data(), rule.weights.data(),
-                        place_.data() + at, moments_.data());
+                        static_cast<const double*>(table_.at(kEnd) + at), rule.nodes.data(),
+                        rule.weights.data(), table_.at(kPlace) + at, moments_.data());
     const int lanes = std::min(kLanes, count_ - first);
     for (int j = 0; j < kProjectionTerms; ++j)
       for (int l = 0; l < lanes; ++l)
@@ -240,13 +325,13 @@ void KinkMoments::find_sweep_moments(double end, std::size_t place_terms) {
   static const SweepRule<kNodes> rule;
   for (int first = 0; first < count_; first += kLanes) {
     const auto at = static_cast<std::size_t>(first);
-    run_widest<SweepMoments<kNodes>>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
-                                     std::min(place_terms, terms_), first_lanes(count_ - first),
-                                     static_cast<const double*>(knot_.data() + at),
-                                     static_cast<const double*>(force_.data() + at / kLanes * kForce),
-                                     powers_, static_cast<const double*>(end_.data() + at), end,
-                                     rule.nodes.data(), rule.of_moments.data(), degree_, place_.data() + at,
-                                     sweep_moments_.data() + at * idx_of(degree_ + 1));
+    run_widest<SweepMoments<kNodes>>(
+        static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
+        std::min(place_terms, terms_), first_lanes(count_ - first),
+        static_cast<const double*>(table_.at(kKnot) + at),
+        static_cast<const double*>(force_.data() + at / kLanes * kForce), powers_,
+        static_cast<const double*>(table_.at(kEnd) + at), end, rule.nodes.data(), rule.of_moments.data(),
+        degree_, table_.at(kPlace) + at, sweep_moments_.data() + at * idx_of(degree_ + 1));
   }
 }
 
@@ -258,13 +343,20 @@ void KinkMoments::add_to_sweep(double end, int degree, int nodes, std::size_t pl
   nodes == kSweepRules[0]   ? find_sweep_moments<kSweepRules[0]>(end, place_terms)
   : nodes == kSweepRules[1] ? find_sweep_moments<kSweepRules[1]>(end, place_terms)
                             : find_sweep_moments<kSweepRules[2]>(end, place_terms);
+  const std::ptrdiff_t step = stride;
+  double* const first = columns + degree * step;
   for (int i = 0; i < count_; ++i) {
-    const double* moments =
-        sweep_moments_.data() + idx_of(i) / kLanes * kLanes * idx_of(degree + 1) + lane_of(i);
-    moments += idx_of(degree) * kLanes;
-    double* column = columns + row_[idx_of(i)];
-#pragma GCC unroll 4
-    for (int j = degree; j >= 0; --j, column += stride, moments -= kLanes) *column += *moments;
+    const double* moment =
+        sweep_moments_.data() + idx_of(i) / kLanes * kLanes * idx_of(degree + 1) + i % kLanes;
+    double* at = first + row_[idx_of(i)];
+    int left = degree + 1;
+    for (; left >= 4; left -= 4, at -= 4 * step, moment += 4 * kLanes) {
+      at[0] += moment[0];
+      at[-step] += moment[kLanes];
+      at[-2 * step] += moment[2 * kLanes];
+      at[-3 * step] += moment[3 * kLanes];
+    }
+    for (; left > 0; --left, at -= step, moment += kLanes) *at += *moment;
   }
 }
 

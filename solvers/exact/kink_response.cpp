@@ -111,8 +111,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   laws_.use_slopes(series_, end);
   slopes_changed_ = true;
   const int stride = series_.stride(), degree = size_.degree;
-  moments_.resize(idx((TaylorSeries::kMostSwept + 1) * stride),
-                  0.0);
+  moments_.resize(idx((TaylorSeries::kMostSwept + 1) * stride), 0.0);
   const Rule rule =
       rule_for(size_.response, series_.rate() * series_.step() * end, kOfShare * share, size_.scale, end);
   loads_.expand_kinks(series_, rule.terms);

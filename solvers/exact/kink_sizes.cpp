@@ -6,6 +6,10 @@
 
 namespace drev {
 
+namespace {
+constexpr double kNoKink = 1e200;  // a rate in lanes behind the last kink: never the least
+}  // namespace
+
 struct KinkSizes::Find {
   template <class L>
   [[gnu::always_inline]] static void run(int count, std::size_t room, double* x, double* sums) {
@@ -13,12 +17,15 @@ struct KinkSizes::Find {
     take(std::numeric_limits<double>::infinity(), least_rate);
     for (int i = 0; i < count; i += kLanes) {
       const auto at = [&](Quantity q) __attribute__((always_inline)) { return x + q * room + i; };
-      L reach, feedback, rate, slope, value;
+      L kinks, reach, feedback, rate, slope, value;
+      load(first_lanes(count - i), kinks);
       load(at(kReach), reach);
+      reach *= kinks;
       load(at(kFeedback), feedback);
       magnitude(feedback);
       load(at(kRate), rate);
       magnitude(rate);
+      rate = rate * kinks + kNoKink * (1.0 - kinks);
       load(at(kChord), value);
       value = reach * value * rate;
       store(value, at(kPull));
@@ -28,7 +35,7 @@ struct KinkSizes::Find {
       store(value, at(kGain));
       raise(most_gain, value);
       load(at(kPush), value);
-      push += value * slope * rate;
+      push += (kinks * value) * slope * rate;
       sink(least_rate, rate / feedback);
     }
     sums[0] = largest_of(most_pull);
@@ -39,26 +46,16 @@ struct KinkSizes::Find {
 };
 
 void KinkSizes::make_room() {
-  const std::size_t more = room_ + kLanes;
-  LaneVector values(kQuantities * more);
-  for (std::size_t q = 0; q < kQuantities; ++q)
-    std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(q * room_), room_,
-                values.begin() + static_cast<std::ptrdiff_t>(q * more));
-  values_ = std::move(values);
-  room_ = more;
-  loads_.resize(room_);
+  table_.make_room();
+  loads_.resize(table_.room());
 }
 
 void KinkSizes::find(double h) {
   most_pull_ = most_gain_ = push_ = 0.0;
   least_rate_ = std::numeric_limits<double>::infinity();
   if (count_ == 0) return;
-  for (std::size_t i = count_; i % kLanes != 0; ++i) {  // no kink, but one that turns
-    for (const Quantity q : {kReach, kPush, kFeedback, kChord, kSlope}) at(q)[i] = 0.0;
-    at(kRate)[i] = 1.0;
-  }
   std::array<double, 4> sums;
-  run_widest<Find>(count(), room_, values_.data(), sums.data());
+  run_widest<Find>(count(), table_.room(), table_.at(0), sums.data());
   most_pull_ = sums[0];
   most_gain_ = sums[1];
   push_ = (1.0 + kMonotone) * h * h * sums[2];

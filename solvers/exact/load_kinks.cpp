@@ -20,20 +20,7 @@ constexpr int kMostListed = 1 << 30;  // kinks counted over all listings before 
 void LoadSeries::expand_kinks(const TaylorSeries& series, std::size_t most) {
   const std::size_t of_motion = idx(series.degree()) + 1,
                     terms = std::min(most, std::max<std::size_t>(of_motion, 3));
-  kinks_.set_terms(terms);
-  for (int i = 0; i < kinks_.count(); ++i) {
-    const PlacedLoad& l = kink_sizes_.load_of(i);
-    const double coeff = l.coeff;
-    const std::size_t known = l.feedback ? std::min(terms, of_motion) : 1;
-    double* __restrict theta = kinks_.angle(i);
-    theta[0] = l.angle;
-    const double* __restrict z = series.coefficients(1) + l.row;
-    double* __restrict term = theta + kLanes;
-#pragma GCC unroll 4
-    for (std::size_t k = 1; k < known; ++k, z += stride_, term += kLanes) *term = coeff * *z;
-    for (std::size_t k = known; k < terms; ++k) theta[k * kLanes] = 0.0;
-    for (std::size_t k = 1; k < 3; ++k) theta[k * kLanes] += l.ratio * phi_[k];
-  }
+  kinks_.expand(series.coefficients(0), stride_, std::min(terms, of_motion), terms, phi_);
 }
 
 double LoadSeries::find_kinks(TaylorSeries& series) {
@@ -60,7 +47,7 @@ bool LoadSeries::list_sweep_kinks(TaylorSeries& series, double end, const double
   else
     for (int i = 0; i < system_.size(); ++i) ranges_[idx(i)] = z_end[i] - series.coefficient(0, i);
   if (!list_kinks(series, end, false)) return false;
-  if (!given_kinks_) return true;
+  if (kinks_.all_turn()) return true;
   // The work of a load whose angle follows no motion is known where its row is not moved by another kink before.
   for (int i = 0; i < kinks_.count(); ++i)
     for (int k = 0; k < kinks_.count(); ++k)
@@ -93,8 +80,7 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, double ra
       if (l.watched) break;
       kinks_inside_ = std::max(kinks_inside_, inside);
     }
-    given_kinks_ |= !l.feedback;
-    kinks_.add(l.row, bound, l.coeff, behind->force, end);
+    kinks_.add(l, bound, behind->force, end);
     kink_sizes_.add(l, rate, chord, slope);
     shared_rows_ |= std::exchange(last_kink_[idx(l.row)], listed_before_ + kinks_.count()) > listed_before_;
     steepest += slope;
@@ -116,7 +102,7 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
   kinks_.clear();
   kink_sizes_.clear();
   kinks_inside_ = 0.0;
-  given_kinks_ = shared_rows_ = false;
+  shared_rows_ = false;
   bool all = true;
   const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
   for (const StraightLoads::Near& near : straight_.near_knots(series, to, phi_, turns)) {
@@ -173,12 +159,7 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
   return all;
 }
 
-void LoadSeries::add_kink_slopes(TaylorSeries& series, double factor) const {
-  for (int i = 0; i < kinks_.count(); ++i)
-    series.add_row_stiffness(kinks_.row(i), -factor * kink_sizes_.feedback(i) * kinks_.jump(i));
-}
-
-/// The same of a kink whose angle follows no motion: by Gauss's nodes along the series, and by parts on what kinks add.
+/// Work of a kink whose angle follows no motion: by Gauss's nodes along the series, and by parts on what kinks add.
 double LoadSeries::given_kink_work(const TaylorSeries& series, int kink, double end) const {
   const PlacedLoad& l = kink_sizes_.load_of(kink);
   const GaussRule& rule = gauss_rule();
@@ -202,20 +183,9 @@ double LoadSeries::kink_work(const TaylorSeries& series, double s) const {
   const double *y = series.swept(0), *y_sum = series.swept(1), *y_sum_2 = series.swept(2);
   double sum = expanded_.swept_work(series, s);
   sum += work_by_parts(stride_, p_.data(), s, y, y_sum, y_sum_2);  // of what acts along the series
-  for (int i = 0; i < kinks_.count(); ++i) {
-    const PlacedLoad& l = kink_sizes_.load_of(i);
-    const double beyond = kinks_.end(i) - kinks_.knot(i);
-    if (!l.feedback) {
-      sum += given_kink_work(series, i, s);
-      continue;
-    }
-    // f(theta - knot) along theta, less along the nominal motion.
-    const KinkMoments::Force at_end = kinks_.force(i, beyond + l.coeff * y[l.row]);
-    const double along = kinks_.moment(i, 0) + at_end.slope * l.coeff * y_sum[l.row];
-    const double along_2 = kinks_.moment(i, 1) + at_end.slope * l.coeff * y_sum_2[l.row];
-    sum += at_end.integral / l.coeff -
-           l.ratio / l.coeff * ((phi_[1] + 2.0 * s * phi_[2]) * along - 2.0 * phi_[2] * along_2);
-  }
+  sum += kinks_.work(phi_[1] + 2.0 * s * phi_[2], 2.0 * phi_[2], y, y_sum, y_sum_2);
+  for (int i = 0; !kinks_.all_turn() && i < kinks_.count(); ++i)
+    if (!kink_sizes_.load_of(i).feedback) sum += given_kink_work(series, i, s);
   return sum;
 }
 

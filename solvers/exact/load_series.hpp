@@ -79,12 +79,12 @@ class LoadSeries {
   const KinkMoments& kinks() const { return kinks_; }
   /// Puts the loads' slopes at s, behind the kinks listed, in place of those at the step's start; and those back.
   void use_slopes(TaylorSeries& series, double s) {
-    add_kink_slopes(series, 1.0);
+    series.add_row_stiffness(kinks_.count(), kinks_.rows(), kinks_.slopes(), -1.0);
     expanded_.use_slopes(series, s);
   }
   void return_slopes(TaylorSeries& series) {
     expanded_.return_slopes(series);
-    add_kink_slopes(series, -1.0);
+    series.add_row_stiffness(kinks_.count(), kinks_.rows(), kinks_.slopes(), 1.0);
   }
   /// Some of them are on one row.
   bool kinks_share_rows() const { return shared_rows_; }
@@ -122,7 +122,6 @@ class LoadSeries {
   double work(TaylorSeries& series, double s, const Vector& end);
 
  private:
-  void add_kink_slopes(TaylorSeries& series, double factor) const;
   void move(double t, const Vector& z, const Vector& v);
   double angle_term(const PlacedLoad& load, const TaylorSeries& series, int k) const;
   double find_kinks(TaylorSeries& series);
@@ -175,7 +174,6 @@ class LoadSeries {
   std::vector<int> last_kink_;  // by row, the kink listed last, counted from 1 over all listings
   int listed_before_ = 0;       // in listings before this one
   bool shared_rows_ = false;
-  bool given_kinks_ = false;  // some of a load whose angle follows no motion
   bool projected_ = false, with_laws_ = false;
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;

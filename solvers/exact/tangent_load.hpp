@@ -22,6 +22,7 @@ struct PlacedLoad {
   int row = 0;
   double coeff = 0.0, ratio = 0.0;
   bool feedback = false;                             // follows the actual motion
+  double turn = 0.0, per_turn = 0.0;                 // of the angle by its row: coeff and 1/coeff; without feedback 0
   double angle = 0.0, deviation = 0.0, speed = 0.0;  // rad, rad/s
   bool watched = false;                              // its angle may turn back in this step
   double contraction = 0.0;                          // by its kinks in this step: LoadSeries::Pass
@@ -35,6 +36,7 @@ struct PlacedLoad {
     const NodeMap& map = system.node_map(load.node);
     row = system.place(map);
     coeff = map.coeff;
+    if (feedback) turn = coeff, per_turn = 1.0 / coeff;
   }
   void find_reach(const TaylorSeries& series) {
     reach = std::abs(coeff) * series.reach(row);

@@ -6,6 +6,9 @@
 /// it through memory at each operation, at a tenth of the speed; there a pair of vectors of 32 bytes is taken.
 #include <drev/core/lanes.hpp>
 
+#include <algorithm>
+#include <array>
+
 namespace drev {
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
@@ -209,6 +212,13 @@ template <class L>
   most = most < other ? other : most;
   return most[0];
 }
+/// Ones in the first lanes, so many, and zeros behind them.
+inline constexpr auto kFirstLanes = [] {
+  std::array<double, 2 * kLanes> ones{};
+  for (std::size_t i = 0; i < kLanes; ++i) ones[i] = 1.0;
+  return ones;
+}();
+inline const double* first_lanes(int count) { return kFirstLanes.data() + kLanes - std::min(count, kLanes); }
 /// One bit a lane, set where x >= 0: no processor can foretell which of them are.
 template <class L>
 [[gnu::always_inline]] inline unsigned not_below_zero(const L& x) {

@@ -66,6 +66,15 @@ class TaylorSeries {
     else
       add_stiffness(system_.diagonal_slots()[idx(row)], value);
   }
+  /// The same of `count` rows, factor times a value each.
+  void add_row_stiffness(int count, const int* rows, const double* values, double factor) {
+    if (k_main_ == nullptr || row_slopes_.size() > 0) {
+      for (int i = 0; i < count; ++i) add_row_stiffness(rows[i], factor * values[i]);
+      return;
+    }
+    double* main = main_diagonal();
+    for (int i = 0; i < count; ++i) main[rows[i]] += factor * values[i];
+  }
   /// Subtracts slopes of loads from the diagonal of each row, and notes them (widen()).
   void add_row_slopes(const double* slope);
   /// Adds k b b^T with the row b of a term; the same of a damper, and takes back the one that was added last.
