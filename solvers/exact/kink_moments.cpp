@@ -154,7 +154,7 @@ struct Moments {
 };
 
 /// Moments int_s^e (e - s)^j/j! f(theta - knot) ds, j = 0 ... degree, by Gauss's rule with kSweepNodes nodes, whose weights times
-/// (1 - node)^j/j! are at weights + j kSweepNodes.
+/// (1 - node)^j/j! are at weights + j kSweepNodes; `step` apart, zeros in lanes without a kink.
 template <int kSweepNodes>
 struct SweepMoments {
   template <class L>
@@ -162,7 +162,7 @@ struct SweepMoments {
                                          const double* lanes, const double* knot, const double* force,
                                          std::size_t powers, const double* end, double s_end,
                                          const double* nodes, const double* weights, int degree,
-                                         double* place, double* moments) {
+                                         double* place, int step, double* moments) {
     L target, at_end, s;
     load(lanes, s);
     load_turn(knot, end, s, target, at_end);
@@ -180,15 +180,17 @@ struct SweepMoments {
       store(f_0, f + q * kLanes);
       store(f_1, f + (q + 1) * kLanes);
     }
-    L power = rest;  // rest^(j+1)
-    for (int j = 0; j <= degree; ++j, weights += kSweepNodes) {
+    L power;  // rest^(j+1)
+    load(lanes, power);
+    power *= rest;
+    for (int j = 0; j <= degree; ++j, weights += kSweepNodes, moments += step) {
       L sum{}, x;
       for (int q = 0; q < kSweepNodes; ++q) {
         load(f + q * kLanes, x);
         sum += weights[q] * x;
       }
       sum *= power;
-      store(sum, moments + j * kLanes);
+      store(sum, moments);
       power *= rest;
     }
   }
@@ -239,11 +241,11 @@ struct KinkMoments::Work {
         integral = integral * behind + (1.0 / static_cast<double>(q + 2)) * x;
       }
       slope *= turn;
-      const double* moments = kinks->sweep_moments_.data() + idx_of(i) * idx_of(kinks->degree_ + 1);
+      const double* moments = kinks->sweep_moments_.data() + i;
       load(moments, along);
       gather(y_sum, row, x);
       along += slope * x;
-      load(moments + kLanes, along_2);
+      load(moments + whole_lanes(kinks->count_), along_2);
       gather(y_sum_2, row, x);
       along_2 += slope * x;
       load(at(kRatio), x);
@@ -321,43 +323,28 @@ void KinkMoments::add_to(LegendreProjection& projection) {
 }
 
 template <int kNodes>
-void KinkMoments::find_sweep_moments(double end, std::size_t place_terms) {
+void KinkMoments::find_moments(double end, int degree, std::size_t place_terms) {
   static const SweepRule<kNodes> rule;
   for (int first = 0; first < count_; first += kLanes) {
     const auto at = static_cast<std::size_t>(first);
-    run_widest<SweepMoments<kNodes>>(
-        static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
-        std::min(place_terms, terms_), first_lanes(count_ - first),
-        static_cast<const double*>(table_.at(kKnot) + at),
-        static_cast<const double*>(force_.data() + at / kLanes * kForce), powers_,
-        static_cast<const double*>(table_.at(kEnd) + at), end, rule.nodes.data(), rule.of_moments.data(),
-        degree_, table_.at(kPlace) + at, sweep_moments_.data() + at * idx_of(degree_ + 1));
+    run_widest<SweepMoments<kNodes>>(static_cast<const double*>(theta_.data() + at / kLanes * kGroup), terms_,
+                                     std::min(place_terms, terms_), first_lanes(count_ - first),
+                                     static_cast<const double*>(table_.at(kKnot) + at),
+                                     static_cast<const double*>(force_.data() + at / kLanes * kForce),
+                                     powers_, static_cast<const double*>(table_.at(kEnd) + at), end,
+                                     rule.nodes.data(), rule.of_moments.data(), degree,
+                                     table_.at(kPlace) + at, whole_lanes(count_), sweep_moments_.data() + at);
   }
 }
 
-void KinkMoments::add_to_sweep(double end, int degree, int nodes, std::size_t place_terms, int stride,
-                               double* columns) {
-  degree_ = degree;
-  if (count_ == 0) return;
-  sweep_moments_.resize(idx_of(degree + 1) * idx_of(whole_lanes(count_)));
-  nodes == kSweepRules[0]   ? find_sweep_moments<kSweepRules[0]>(end, place_terms)
-  : nodes == kSweepRules[1] ? find_sweep_moments<kSweepRules[1]>(end, place_terms)
-                            : find_sweep_moments<kSweepRules[2]>(end, place_terms);
-  const std::ptrdiff_t step = stride;
-  double* const first = columns + degree * step;
-  for (int i = 0; i < count_; ++i) {
-    const double* moment =
-        sweep_moments_.data() + idx_of(i) / kLanes * kLanes * idx_of(degree + 1) + i % kLanes;
-    double* at = first + row_[idx_of(i)];
-    int left = degree + 1;
-    for (; left >= 4; left -= 4, at -= 4 * step, moment += 4 * kLanes) {
-      at[0] += moment[0];
-      at[-step] += moment[kLanes];
-      at[-2 * step] += moment[2 * kLanes];
-      at[-3 * step] += moment[3 * kLanes];
-    }
-    for (; left > 0; --left, at -= step, moment += kLanes) *at += *moment;
-  }
+TaylorSeries::RowMoments KinkMoments::find_moments(double end, int degree, int nodes,
+                                                   std::size_t place_terms) {
+  const int step = whole_lanes(count_);
+  sweep_moments_.resize(idx_of(degree + 1) * idx_of(step));
+  nodes == kSweepRules[0]   ? find_moments<kSweepRules[0]>(end, degree, place_terms)
+  : nodes == kSweepRules[1] ? find_moments<kSweepRules[1]>(end, degree, place_terms)
+                            : find_moments<kSweepRules[2]>(end, degree, place_terms);
+  return {.count = count_, .rows = row_.data(), .values = sweep_moments_.data(), .step = step};
 }
 
 }  // namespace drev

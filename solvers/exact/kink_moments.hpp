@@ -9,6 +9,7 @@
 #include "solvers/exact/lane_table.hpp"
 #include "solvers/exact/tangent_load.hpp"
 #include "solvers/series/legendre_projection.hpp"
+#include "solvers/series/taylor_series.hpp"
 
 namespace drev {
 
@@ -51,9 +52,9 @@ class KinkMoments {
               const std::array<double, 3>& phi);
   /// Adds the moments of all kinks over the whole step.
   void add_to(LegendreProjection& projection);
-  /// Adds W_j = int_s^e (e - s)^j/j! f(theta - knot) ds up to s = e, of rows in columns of `stride`: W_degree ... W_0, zero
-  /// before. nodes: of Gauss's rule, one of kSweepRules; place_terms: so many of theta's terms tell where it passes the knot.
-  void add_to_sweep(double end, int degree, int nodes, std::size_t place_terms, int stride, double* columns);
+  /// W_j = int_s^e (e - s)^j/j! f(theta - knot) ds up to s = e, j <= degree, of each kink (TaylorSeries::RowMoments). nodes: of
+  /// Gauss's rule, one of kSweepRules; place_terms: so many of theta's terms tell where it passes the knot.
+  TaylorSeries::RowMoments find_moments(double end, int degree, int nodes, std::size_t place_terms);
   static constexpr std::array<int, 3> kSweepRules{4, 6, 8};
   /// The s, found by either, at which theta passes the knot of kink i.
   double place(int i) const { return places()[i]; }
@@ -64,7 +65,7 @@ class KinkMoments {
   double end(int i) const { return table_.at(kEnd)[i]; }
   /// By how much the slope of the force on its row jumps at the knot, by the row [N m/rad or N/m].
   const double* slopes() const { return table_.at(kSlope); }
-  /// Work up to s = e, to where add_to_sweep() went, of all kinks whose angles turn, where they add y to the motion, whose values
+  /// Work up to s = e, to where find_moments() went, of all kinks whose angles turn, where they add y to the motion, whose values
   /// there these are, and int y ds and int (e - s) y ds: of f(theta - knot) along theta, less along the nominal motion, whose rate
   /// is rate - bend (e - s).
   double work(double rate, double bend, const double* y, const double* y_sum, const double* y_sum_2) const;
@@ -73,11 +74,6 @@ class KinkMoments {
     double value = 0.0, slope = 0.0, integral = 0.0;
   };
   Force force(int i, double behind) const;
-  /// W_j of kink i alone, as add_to_sweep() found it.
-  double moment(int i, int j) const {
-    const auto at = idx_of(i);
-    return sweep_moments_[(at / kLanes * idx_of(degree_ + 1) + idx_of(j)) * kLanes + at % kLanes];
-  }
 
  private:
   enum Quantity { kKnot, kEnd, kAngle, kRatio, kTurn, kPerTurn, kSlope, kPlace, kQuantities };
@@ -86,10 +82,10 @@ class KinkMoments {
   void make_room();
   void add_powers(std::size_t i, double factor, std::span<const double> force);
   template <int kNodes>
-  void find_sweep_moments(double end, std::size_t place_terms);
+  void find_moments(double end, int degree, std::size_t place_terms);
   static constexpr std::size_t kMostTerms = 33, kGroup = kMostTerms * kLanes;
   static constexpr std::size_t kForce = kMostPowers * kLanes;
-  int count_ = 0, degree_ = 0;
+  int count_ = 0;
   std::size_t terms_ = 0, powers_ = 1;  // terms of the angles; powers of the forces
   bool all_turn_ = true;
   std::vector<int> row_;

@@ -110,19 +110,25 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   loads_.use_slopes(series_, end);
   laws_.use_slopes(series_, end);
   slopes_changed_ = true;
-  const int stride = series_.stride(), degree = size_.degree;
-  moments_.resize(idx((TaylorSeries::kMostSwept + 1) * stride), 0.0);
+  const int degree = size_.degree;
   const Rule rule =
       rule_for(size_.response, series_.rate() * series_.step() * end, kOfShare * share, size_.scale, end);
   loads_.expand_kinks(series_, rule.terms);
-  kinks.add_to_sweep(end, degree, rule.nodes, rule.place_terms, stride, moments_.data());
-  if (laws_.active()) again_.assign(moments_.begin(), moments_.begin() + (degree + 1) * stride);
-  series_.sweep(moments_.data(), degree);
+  TaylorSeries::RowMoments moments = kinks.find_moments(end, degree, rule.nodes, rule.place_terms);
+  moments.own_rows = !loads_.kinks_share_rows();
+  if (laws_.active()) {  // which read all parts of the motion
+    moments_.assign(idx((degree + 1) * series_.stride()), 0.0);
+    series_.add_to_columns(moments, degree, moments_.data());
+    series_.sweep(moments_.data(), degree);
+  } else {
+    series_.sweep(moments, degree);
+  }
   const bool holds = limited_ || find_limit(end, share - size_.rest, size_.scale);
   limited_ = true;
   if (!holds || !corrects_ || uncorrected_ <= kOfInexact * share) return found_ = holds;
-  laws_.add_changes(series_, degree, again_.data());
-  series_.sweep(again_.data(), degree);
+  series_.add_to_columns(moments, degree, moments_.data());
+  laws_.add_changes(series_, degree, moments_.data());
+  series_.sweep(moments_.data(), degree);
   return found_ = true;
 }
 

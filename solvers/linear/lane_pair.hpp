@@ -245,6 +245,20 @@ template <class L>
   to.high = __builtin_shufflevector(x.high, behind.low, 1, 2, 3, 4);
 }
 
+/// to = lane index[lane] of `low` and, from kLanes on, of `high`.
+[[gnu::always_inline]] inline void pick(const Lanes& low, const Lanes& high, const LaneMask& index,
+                                        Lanes& to) {
+  to = __builtin_shuffle(low, high, index);
+}
+/// Whether loops run on whole Lanes, one in a register.
+inline bool lanes_fill_a_register() {
+#ifdef DREV_SERIES_LEVELS
+  return __builtin_cpu_supports("x86-64-v4");
+#else
+  return false;
+#endif
+}
+
 /// Kernel::run<L>(arguments...) with the type of lanes L that suits the best level of this machine. run is a
 /// static member template, [[gnu::always_inline]], so that it is compiled once a level.
 #ifdef DREV_SERIES_LEVELS

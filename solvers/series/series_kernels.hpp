@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace drev {
@@ -30,6 +31,14 @@ struct BlockDiagonals {
   const DiagonalView* views;
 };
 
+/// Forces on few rows, in one or two rows of lanes: of P_k on row i at values[from[i] - k step]; kMost of those without any.
+struct PackedForces {
+  const double* values = nullptr;  ///< of P_0; null: none
+  int step = 0;                    ///< kLanes or twice as much
+  const std::int64_t* from = nullptr;
+  static constexpr int kMost = 2 * kLanes - 1;  ///< forces: one lane stays zero
+};
+
 /// What acts on every term of a series: adds to Z_k at `term` once it is known without; false: nothing.
 struct TermHook {
   bool (*add)(void* of, int k, double* term) = nullptr;
@@ -50,7 +59,9 @@ struct SeriesRecursion {
   /// The diagonals below, on and above the main one, where k and c have the others alone; null: k and c have all.
   std::array<const double*, 3> k_chain{}, c_chain{};
   bool derivatives = false;
-  TermHook hook = {};  ///< of a series
+  TermHook hook = {};        ///< of a series
+  PackedForces packed = {};  ///< of derivatives, in place of p, where takes_packed_forces()
+  int first_kept = 0;        ///< with those: terms before this one may be lost
 
   /// Z_k = factor (mobility P_{k-2} + k Z_{k-2} + damping_factor c Z_{k-1}).
   double factor(int k) const { return derivatives ? 1.0 : 1.0 / (static_cast<double>(k) * (k - 1)); }
@@ -60,6 +71,9 @@ struct SeriesRecursion {
 /// Z_k for k = first ... last, and, of a series, the largest |Z_k| of each in sizes from 0 on; the last two are not finite if any
 /// of the terms is not. Derivatives have no sizes, and leave P zero.
 void series_terms(const SeriesRecursion& recursion, int first, int last, double* sizes);
+
+/// Whether series_terms() takes this recursion's forces packed.
+bool takes_packed_forces(const SeriesRecursion& recursion);
 
 /// out_i = factor a_i b_i.
 void scaled_product(int stride, double factor, const double* a, const double* b, double* out);

@@ -11,19 +11,47 @@ bool TaylorSeries::sweeps() const {
                       [](const TermForces* forces) { return forces->active() && !forces->sweeps(); });
 }
 
-void TaylorSeries::sweep(double* moments, int degree) {
+SeriesRecursion TaylorSeries::sweep_recursion(int degree) {
   swept_.resize(idx(2 * pad_ + (kMostSwept + 3) * stride_));
   swept_degree_ = degree;
   scale_step();
+  products_ += degree + 1;
   SeriesRecursion r = recursion();
   r.derivatives = true;
-  r.p = moments;
+  r.p = nullptr;
   r.p_degree = degree;
   r.z = swept_.data() + idx(pad_);
-  products_ += degree + 1;
+  return r;
+}
+
+void TaylorSeries::sweep(const RowMoments& moments, int degree) {
+  SeriesRecursion r = sweep_recursion(degree);
+  if (by_kernel() && moments.own_rows && moments.count <= PackedForces::kMost && takes_packed_forces(r)) {
+    packed_from_.assign(idx(stride_), PackedForces::kMost);
+    for (int i = 0; i < moments.count; ++i) packed_from_[idx(moments.rows[i])] = i;
+    r.packed = {moments.values + degree * moments.step, moments.step, packed_from_.data()};
+    r.first_kept = degree + 2 - kSweptParts;
+    return series_terms(r, 2, degree + 2, nullptr);
+  }
+  swept_forces_.resize(idx((kMostSwept + 1) * stride_), 0.0);
+  add_to_columns(moments, degree, swept_forces_.data());
+  sweep(swept_forces_.data(), degree);
+}
+
+void TaylorSeries::sweep(double* moments, int degree) {
+  SeriesRecursion r = sweep_recursion(degree);
+  r.p = moments;
   if (by_kernel()) return series_terms(r, 2, degree + 2, nullptr);
   for (int k = 2; k <= degree + 2; ++k) product_term(r, k);
   std::fill_n(moments, idx((degree + 1) * stride_), 0.0);
+}
+
+void TaylorSeries::add_to_columns(const RowMoments& moments, int degree, double* columns) const {
+  for (int i = 0; i < moments.count; ++i) {
+    const double* moment = moments.values + i;
+    double* at = columns + degree * stride_ + moments.rows[i];
+    for (int j = 0; j <= degree; ++j, at -= stride_, moment += moments.step) *at += *moment;
+  }
 }
 
 double TaylorSeries::coupling(int row, int other) const {

@@ -5,6 +5,8 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <type_traits>
 
 #include "solvers/linear/lane_pair.hpp"
@@ -229,7 +231,7 @@ struct Chain {
 };
 
 /// The same of so few blocks that two terms stay in registers of 64 bytes: to load all that a term needs would take longer than its
-/// sums.
+/// sums. Of a sweep with packed forces, whose first terms nobody wants to keep.
 template <bool kOfSweep, int kBlocks, Beside kBeside, class L>
 struct ShortChain {
   static constexpr bool kSweep = kOfSweep;
@@ -239,17 +241,40 @@ struct ShortChain {
     take(first - 2, older);
     take(first - 1, newer);
   }
+  /// Where term m is put: those that are not kept into four columns in turn.
+  [[gnu::always_inline]] double* place(int m) const {
+    if constexpr (kSweep) m = m < 2 || m >= r.first_kept ? m : 2 + m % 4;
+    return term_of(r.z, kBlocks * kLanes, m);
+  }
   [[gnu::always_inline]] void take(int m, L (&term)[kBlocks]) const {
 #pragma GCC unroll 6
-    for (int b = 0; b < kBlocks; ++b) load(term_of(r.z, kBlocks * kLanes, m) + b * kLanes, term[b]);
+    for (int b = 0; b < kBlocks; ++b) load(place(m) + b * kLanes, term[b]);
   }
   /// Term m, the last one, was changed in memory.
   [[gnu::always_inline]] void take_back(int m) { take(m, newer); }
+  /// sum += mobility P_{m-2}.
+  [[gnu::always_inline]] void add_forces(int i, const double* p, const L& low, const L& high, L& sum) const {
+    L force, w;
+    if constexpr (kSweep) {
+      LaneMask from;
+      std::memcpy(&from, r.packed.from + i, sizeof from);
+      pick(low, high, from, force);
+    } else {
+      load(p + i, force);
+    }
+    load(r.mobility + i, w);
+    sum += w * force;
+  }
   template <class, bool kForces>
-  [[gnu::always_inline]] void term(int m, double* p, L& largest) {
+  [[gnu::always_inline]] void term(int m, const double* p, L& largest) {
     const double factor = kSweep ? 1.0 : r.factor(m), c_factor = kSweep ? 1.0 : r.damping_factor(m);
-    double* next = term_of(r.z, kBlocks * kLanes, m);
-    const double* x_0 = term_of(r.z, kBlocks * kLanes, m - 2);
+    double* next = place(m);
+    const double* x_0 = place(m - 2);
+    L low{}, high{};
+    if constexpr (kForces && kSweep) {
+      load(r.packed.values - (m - 2) * r.packed.step, low);
+      if (r.packed.step > kLanes) load(r.packed.values - (m - 2) * r.packed.step + kLanes, high);
+    }
     L before{};
 #pragma GCC unroll 6
     for (int b = 0; b < kBlocks; ++b) {
@@ -267,7 +292,7 @@ struct ShortChain {
       load(r.c_main + i, value);
       if constexpr (!kSweep) value = c_factor * value;
       sum += value * newer[b];
-      if constexpr (kForces) add_right_side<kSweep>(r.mobility, p, i, sum);
+      if constexpr (kForces) add_forces(i, p, low, high, sum);
       if constexpr (!kSweep) sum = factor * sum;
       before = older[b];
       older[b] = newer[b];
@@ -282,26 +307,38 @@ struct ChainTerms {
   [[gnu::always_inline]] static void run(const SeriesRecursion* recursion, int first, int last,
                                          double* sizes) {
     if constexpr (kBlocks > 0 && kBeside != Beside::any && std::is_same_v<L, Lanes>)
-      all_terms<L>(ShortChain<kSweep, kBlocks, kBeside, L>(*recursion, first), first, last, sizes);
-    else
-      all_terms<L>(Chain<kSweep, kBlocks, kBeside>(*recursion), first, last, sizes);
+      if (!kSweep || recursion->packed.values != nullptr)
+        return all_terms<L>(ShortChain<kSweep, kBlocks, kBeside, L>(*recursion, first), first, last, sizes);
+    all_terms<L>(Chain<kSweep, kBlocks, kBeside>(*recursion), first, last, sizes);
   }
 };
 
+constexpr int kMostBlocks = 6;  // of lanes in a column, over which loops are unrolled
+
+Beside beside_chain(const SeriesRecursion& r) {
+  const int blocks = r.stride / kLanes, *begin = r.k.begin;
+  if (r.c_main == nullptr) return Beside::any;
+  if (begin[blocks] == 0) return Beside::nothing;
+  const bool single =
+      blocks <= kMostBlocks &&
+      std::adjacent_find(begin, begin + blocks + 1, [](int a, int b) { return b > a + 1; }) ==
+          begin + blocks + 1 &&
+      std::all_of(r.k.views, r.k.views + begin[blocks], [](const auto& view) { return view.only >= 0; });
+  return single ? Beside::single_entries : Beside::any;
+}
+
 template <bool kSweep, int kBlocks>
 void run_chain(const SeriesRecursion* r, int first, int last, double* sizes) {
-  const int blocks = r->stride / kLanes, *begin = r->k.begin;
-  const auto run = [&]<Beside kBeside>() {
-    run_widest<ChainTerms<kSweep, kBlocks, kBeside>>(r, first, last, sizes);
-  };
-  if (r->c_main == nullptr) return run.template operator()<Beside::any>();
-  if (begin[blocks] == 0) return run.template operator()<Beside::nothing>();
-  if constexpr (kBlocks > 0)
-    if (std::adjacent_find(begin, begin + blocks + 1, [](int a, int b) { return b > a + 1; }) ==
-            begin + blocks + 1 &&
-        std::all_of(r->k.views, r->k.views + begin[blocks], [](const auto& view) { return view.only >= 0; }))
-      return run.template operator()<Beside::single_entries>();
-  run.template operator()<Beside::any>();
+  switch (beside_chain(*r)) {
+    case Beside::nothing:
+      return run_widest<ChainTerms<kSweep, kBlocks, Beside::nothing>>(r, first, last, sizes);
+    case Beside::single_entries:
+      if constexpr (kBlocks > 0)
+        return run_widest<ChainTerms<kSweep, kBlocks, Beside::single_entries>>(r, first, last, sizes);
+      [[fallthrough]];
+    case Beside::any:
+      run_widest<ChainTerms<kSweep, kBlocks, Beside::any>>(r, first, last, sizes);
+  }
 }
 
 template <bool kSweep>
@@ -318,14 +355,19 @@ void run_terms(const SeriesRecursion* r, int first, int last, double* sizes) {
       return run_chain<kSweep, 4>(r, first, last, sizes);
     case 5:
       return run_chain<kSweep, 5>(r, first, last, sizes);
-    case 6:
-      return run_chain<kSweep, 6>(r, first, last, sizes);
+    case kMostBlocks:
+      return run_chain<kSweep, kMostBlocks>(r, first, last, sizes);
     default:
       return run_chain<kSweep, 0>(r, first, last, sizes);
   }
 }
 
 }  // namespace
+
+bool takes_packed_forces(const SeriesRecursion& r) {
+  return lanes_fill_a_register() && r.k_chain[1] != nullptr && r.stride <= kMostBlocks * kLanes &&
+         beside_chain(r) != Beside::any;
+}
 
 void series_terms(const SeriesRecursion& recursion, int first, int last, double* sizes) {
   if (recursion.derivatives)

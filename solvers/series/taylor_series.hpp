@@ -116,14 +116,28 @@ class TaylorSeries {
   /// overflow. tolerance: relative to the largest deflection and speed noted so far.
   double expand(const Vector& z, const Vector& v, double h, double tolerance);
 
+  /// Of forces f_i on rows, W_j = int (e - s)^j/j! f_i ds at values[j step + i]; zeros behind the last one in whole lanes.
+  struct RowMoments {
+    int count = 0;
+    const int* rows = nullptr;
+    const double* values = nullptr;
+    int step = 0;
+    bool own_rows = false;  ///< no two on the same row
+  };
   /// The motion y that forces f on the unknowns, on top of the right side, add up to s = e, by one backward
-  /// sweep: (y, y') = sum_j A^j (0, h^2 M^-1 W_j), W_j = int (e - s)^j/j! f ds,
-  /// A (y, u) = (u, -h^2 M^-1 K y - h M^-1 C u), with the tangents that stand now. moments: W_degree ... W_0, a column each, which are zero then.
+  /// sweep: (y, y') = sum_j A^j (0, h^2 M^-1 W_j), W_j = int (e - s)^j/j! f ds, j <= degree,
+  /// A (y, u) = (u, -h^2 M^-1 K y - h M^-1 C u), with the tangents that stand now.
   /// Only where sweeps() holds. Source: variation of constants, with exp(A (e - s)) as its Taylor series.
+  void sweep(const RowMoments& moments, int degree);
+  /// The same for forces on any rows, W_degree ... W_0 in a column each, which are zero then; all parts of swept() are known.
   void sweep(double* moments, int degree);
+  /// Adds moments to such columns.
+  void add_to_columns(const RowMoments& moments, int degree, double* columns) const;
   bool sweeps() const;
   static constexpr int kMostSwept = 28;  ///< largest degree of a sweep
-  /// Results of sweep(): y' by s (part = -1), y (0), and int (e - s)^(k-1)/(k-1)! y ds (part = k, up to the degree less 2).
+  /// Results of sweep(): y' by s (part = -1), y (0), and int (e - s)^(k-1)/(k-1)! y ds (part = k, up to kSweptParts - 1, or to the
+  /// degree less 2).
+  static constexpr int kSweptParts = 8;
   const double* swept(int part) const {
     return swept_.data() + idx(pad_ + (swept_degree_ + 1 - part) * stride_);
   }
@@ -230,6 +244,7 @@ class TaylorSeries {
   Chain chain_of(const LaneVector& values) const;
   void scale_step();
   SeriesRecursion recursion();
+  SeriesRecursion sweep_recursion(int degree);
   void product_term(const SeriesRecursion& recursion, int k);
   void next_terms(int first, int last);
   Norm next_term(int k);
@@ -270,8 +285,10 @@ class TaylorSeries {
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
   double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
   SparseCholesky mass_;
-  double mass_norm_ = 0.0;  // of M^-1, largest row sum, where M is not diagonal
-  LaneVector swept_;        // columns of the sweep behind two of zeros
+  double mass_norm_ = 0.0;   // of M^-1, largest row sum, where M is not diagonal
+  LaneVector swept_;         // columns of the sweep behind two of zeros
+  LaneVector swept_forces_;  // zeros between sweeps
+  std::vector<std::int64_t, Eigen::aligned_allocator<std::int64_t>> packed_from_;
   int swept_degree_ = 0;
   LaneVector step_sums_, part_weights_, swept_moments_;  // see series_sums.cpp
   std::vector<Entry> load_damping_;                      // by row, within c_: for take_load_damping()
