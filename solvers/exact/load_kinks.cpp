@@ -56,8 +56,8 @@ bool LoadSeries::list_sweep_kinks(TaylorSeries& series, double end, const double
 }
 
 /// Lists the kinks that a load passes on its way to the angle `end` at a first rate by s, on a piece from low to high at the start.
-/// next(bound, rises, turn): the piece behind a bound, and what the load differs there over a turn behind it. False: it leaves a
-/// piece at a kink of none of this kind.
+/// next(bound, rises, turn, behind): the piece behind a bound, and what the load differs there over a turn behind it; false: a kink
+/// of none of this kind. False: it leaves a piece at one.
 template <class Next>
 bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, double rate, double end,
                                const TaylorSeries& series, bool projected, const Next& next) {
@@ -65,14 +65,14 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, double ra
   double steepest = 0.0;
   for (double bound = rises ? high : low; rises ? end > bound : end < bound;) {
     const double turn = std::abs(end - bound);
-    const std::optional<Behind> behind = next(bound, rises, turn);
-    l.watched = !behind || !(rises ? behind->high > bound : behind->low < bound);
+    Behind behind;
+    l.watched = !next(bound, rises, turn, behind) || !(rises ? behind.high > bound : behind.low < bound);
     if (l.watched) break;
     // Bounds of the force over the turn behind the knot: |f| <= chord turn, |f'| <= slope.
-    double chord = std::abs(behind->force[0]), slope = chord, power = turn;
-    for (std::size_t q = 1; q < behind->force.size(); ++q, power *= turn) {
-      chord += std::abs(behind->force[q]) * power;
-      slope += static_cast<double>(q + 1) * std::abs(behind->force[q]) * power;
+    double chord = std::abs(behind.force[0]), slope = chord, power = turn;
+    for (std::size_t q = 1; q < behind.force.size(); ++q, power *= turn) {
+      chord += std::abs(behind.force[q]) * power;
+      slope += static_cast<double>(q + 1) * std::abs(behind.force[q]) * power;
     }
     if (projected) {
       const double inside = kKinkInside * std::abs(l.coeff * chord * rate) * relative_move(series, l.row);
@@ -80,11 +80,11 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, double ra
       if (l.watched) break;
       kinks_inside_ = std::max(kinks_inside_, inside);
     }
-    kinks_.add(l, bound, behind->force, end);
+    kinks_.add(l, bound, behind.force, end);
     kink_sizes_.add(l, rate, chord, slope);
     shared_rows_ |= std::exchange(last_kink_[idx(l.row)], listed_before_ + kinks_.count()) > listed_before_;
     steepest += slope;
-    bound = rises ? behind->high : behind->low;
+    bound = rises ? behind.high : behind.low;
   }
   if (l.feedback && projected)
     l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * steepest * series.mobility(l.row);
@@ -113,13 +113,13 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
       continue;
     }
     StraightLoads::look_from_start(l);
-    double jump = 0.0;
-    const auto next = [&](double bound, bool rises, double) -> std::optional<Behind> {
-      const double slope = l.ahead.angle_slope, time_slope = l.ahead.time_slope;
-      straight_.look_beyond(l, t_, bound, rises);
-      if (l.ahead.time_slope != time_slope) return std::nullopt;
-      jump = l.ahead.angle_slope - slope;
-      return Behind{l.ahead.low, l.ahead.high, {&jump, 1}};
+    double slope = l.stretch.angle_slope, jump = 0.0;
+    const auto next = [&](double bound, bool rises, double, Behind& behind) {
+      const StraightLoads::Ahead ahead = straight_.look_beyond(l, t_, bound, rises);
+      if (ahead.time_slope != l.stretch.time_slope) return false;
+      jump = ahead.angle_slope - std::exchange(slope, ahead.angle_slope);
+      behind = {ahead.low, ahead.high, {&jump, 1}};
+      return true;
     };
     all &= list_kinks_of(l, l.stretch.low, l.stretch.high, near.rate, near.end, series, projected, next);
   }
@@ -142,13 +142,13 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
       }
       CubicPiece piece = l.piece;
       double about = l.about;
-      const auto next = [&](double bound, bool rises, double turn) -> std::optional<Behind> {
+      const auto next = [&](double bound, bool rises, double turn, Behind& found) {
         const CubicPiece behind = l.knots->piece(bound, rises ? 1.0 : -1.0, l.piece_speed);
         const auto force = expanded_.behind_knot(l, piece, about, bound, behind, turn);
         piece = behind;
         about = bound;
-        if (!force) return std::nullopt;
-        return Behind{behind.low, behind.high, *force};
+        if (force) found = {behind.low, behind.high, *force};
+        return force.has_value();
       };
       const double end =
           l.angle + l.ratio * to * (phi_[1] + to * phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);

@@ -130,8 +130,8 @@ class LoadSeries {
   bool list_kinks(const TaylorSeries& series, double to, bool projected);
   /// A piece behind a knot, and what the load differs there (KinkMoments::add).
   struct Behind {
-    double low, high;
-    std::span<const double> force;
+    double low = 0.0, high = 0.0;
+    std::span<const double> force = {};
   };
   template <class Next>
   bool list_kinks_of(PlacedLoad& load, double low, double high, double rate, double end,

@@ -210,9 +210,10 @@ void StraightLoads::move_as(const StraightLoads& other) {
 }
 
 void StraightLoads::refresh(Load& l) {
-  l.angle = value(l, kAngle);
-  l.deviation = value(l, kDeviation);
-  l.speed = value(l, kSpeed);
+  const double* from = &value(l, static_cast<Quantity>(0));
+  l.angle = from[kAngle * stride_];
+  l.deviation = from[kDeviation * stride_];
+  l.speed = from[kSpeed * stride_];
 }
 
 std::vector<StraightLoads::Load>& StraightLoads::loads() {
@@ -224,13 +225,15 @@ std::vector<StraightLoads::Load>& StraightLoads::loads() {
 
 /// Writes the load's stretch to its row.
 void StraightLoads::place(Load& l) {
-  value(l, kLow) = l.stretch.low;
-  value(l, kHigh) = l.stretch.high;
-  value(l, kTorque) = l.stretch.torque;
-  value(l, kAngleSlope) = l.stretch.angle_slope;
-  value(l, kTimeSlope) = l.stretch.time_slope;
-  value(l, kAngle0) = l.angle_0;
-  value(l, kTime0) = l.t_0;
+  double* to = &value(l, static_cast<Quantity>(0));
+  const auto put = [&](Quantity q, double x) { to[q * stride_] = x; };
+  put(kLow, l.stretch.low);
+  put(kHigh, l.stretch.high);
+  put(kTorque, l.stretch.torque);
+  put(kAngleSlope, l.stretch.angle_slope);
+  put(kTimeSlope, l.stretch.time_slope);
+  put(kAngle0, l.angle_0);
+  put(kTime0, l.t_0);
 }
 
 void StraightLoads::look_up(Load& l, double t, double direction) {
@@ -239,7 +242,7 @@ void StraightLoads::look_up(Load& l, double t, double direction) {
   if (l.table >= 0) {
     const TableStretches& table = tables_[idx(l.table)];
     l.place = table.find(l.angle, l.phase, direction);
-    l.stretch = table.at(l.place);
+    table.find(l.place, l.stretch);
     if (table.bounded()) l.angle_0 = l.stretch.low;
   } else {
     l.stretch = l.term->load->stretch(t, l.angle, direction).value_or(LoadStretch{});
@@ -247,16 +250,10 @@ void StraightLoads::look_up(Load& l, double t, double direction) {
   place(l);
 }
 
-void StraightLoads::look_beyond(Load& l, double t, double bound, bool rises) const {
+StraightLoads::Ahead StraightLoads::look_beyond_call(Load& l, double t, double bound, bool rises) const {
   l.ahead_angle_0 = bound;
-  if (l.table >= 0) {
-    const TableStretches& table = tables_[idx(l.table)];
-    l.ahead_place = table.next(l.ahead_place, rises);
-    l.ahead = table.at(l.ahead_place);
-    l.ahead_angle_0 = l.ahead.low;
-  } else {
-    l.ahead = l.term->load->stretch(t, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
-  }
+  l.ahead = l.term->load->stretch(t, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
+  return {l.ahead.low, l.ahead.high, l.ahead.angle_slope, l.ahead.time_slope};
 }
 
 void StraightLoads::locate(double t) {
@@ -282,9 +279,14 @@ void StraightLoads::advance(double t, bool whole) {
     for (const Near& near : near_) {
       Load& l = load_of(near);
       if (l.watched) continue;
-      l.stretch = l.ahead;
-      l.angle_0 = l.ahead_angle_0;
-      l.place = l.ahead_place;
+      if (l.table >= 0) {
+        l.place = l.ahead_place;
+        tables_[idx(l.table)].find(l.place, l.stretch);
+        l.angle_0 = l.stretch.low;
+      } else {
+        l.stretch = l.ahead;
+        l.angle_0 = l.ahead_angle_0;
+      }
       place(l);
     }
   for (Layer& layer : layers_) {

@@ -19,11 +19,11 @@ class StraightLoads {
  public:
   struct Load : PlacedLoad {
     using PlacedLoad::PlacedLoad;
-    LoadStretch stretch = {}, ahead = {};
-    double t_0 = 0.0, angle_0 = 0.0;  // time and angle at which `stretch` gives its torque
-    double ahead_angle_0 = 0.0;       // the same of `ahead`
-    double phase = 0.0;               // of its table
-    int table = -1;                   // whose stretches these are; -1: of a load that has none
+    LoadStretch stretch = {}, ahead = {};  // ahead: of a load without a table
+    double t_0 = 0.0, angle_0 = 0.0;       // time and angle at which `stretch` gives its torque
+    double ahead_angle_0 = 0.0;            // the same of `ahead`
+    double phase = 0.0;                    // of its table
+    int table = -1;                        // whose stretches these are; -1: of a load that has none
     TableStretches::Place place = {}, ahead_place = {};
     std::size_t layer = 0;
   };
@@ -42,13 +42,21 @@ class StraightLoads {
   /// Takes the stretches that loads came to by move(); where `whole`, those ahead of the step that was listed.
   void advance(double t, bool whole);
   void look_up(Load& load, double t, double direction);
-  /// The load's `ahead` is the stretch at hand; then, over a bound that it comes to at time t, the one behind it.
+  /// What lies ahead of a load, over one bound after the other: first the stretch at hand; then, over a bound that it comes to at
+  /// time t, the one behind it, which it keeps for advance(). Where it starts, and what its slopes are.
+  struct Ahead {
+    double low, high, angle_slope, time_slope;
+  };
   static void look_from_start(Load& load) {
     load.ahead = load.stretch;
-    load.ahead_angle_0 = load.angle_0;
     load.ahead_place = load.place;
   }
-  void look_beyond(Load& load, double t, double bound, bool rises) const;
+  Ahead look_beyond(Load& load, double t, double bound, bool rises) const {
+    if (load.table < 0) return look_beyond_call(load, t, bound, rises);
+    const TableStretches& table = tables_[idx(load.table)];
+    load.ahead_place = table.next(load.ahead_place, rises);
+    return {table.low(load.ahead_place), table.high(load.ahead_place), table.slope(load.ahead_place), 0.0};
+  }
 
   /// Adds to p, by powers of s over a step of h [s] from t, the torques along the nominal motion phi; to the series the slopes.
   void add_to(TaylorSeries& series, double t, double h, const std::array<double, 3>& phi, double* p);
@@ -97,6 +105,7 @@ class StraightLoads {
   struct SlopeWork;
   double* values(Layer& layer, Quantity q) const { return layer.values.data() + idx(q * stride_); }
   double& value(const Load& load, Quantity q) { return values(layers_[load.layer], q)[load.row]; }
+  Ahead look_beyond_call(Load& load, double t, double bound, bool rises) const;
   void place(Load& load);
   void refresh(Load& load);
   template <class Each>

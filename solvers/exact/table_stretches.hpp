@@ -4,6 +4,7 @@
 #include <drev/core/load_table.hpp>
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace drev {
@@ -33,15 +34,15 @@ class TableStretches {
   bool bounded() const { return bounded_; }
   double low(Place p) const { return p.turns * period_ + stretches_[p.number].knot - p.phase; }
   double high(Place p) const { return low(next(p, true)); }
-  /// With the torque at its lower bound.
-  LoadStretch at(Place p) const {
+  double slope(Place p) const { return stretches_[p.number].slope; }
+  /// With the torque at its lower bound. One number after the other: a copy of what was just stored in parts has to wait for it.
+  void find(Place p, LoadStretch& to) const {
     const Stretch& s = stretches_[p.number];
-    LoadStretch stretch{.torque = s.torque, .angle_slope = s.slope};
-    if (bounded()) {
-      stretch.low = low(p);
-      stretch.high = high(p);
-    }
-    return stretch;
+    to.torque = s.torque;
+    to.time_slope = 0.0;
+    to.angle_slope = s.slope;
+    to.low = bounded_ ? low(p) : -std::numeric_limits<double>::infinity();
+    to.high = bounded_ ? high(p) : std::numeric_limits<double>::infinity();
   }
 
  private:
