@@ -71,16 +71,31 @@ void multiply_polynomial(std::span<const double> by, std::vector<double>& g) {
   g = std::move(product);
 }
 
+// Even and odd powers apart: two sums that do not wait for each other.
 double polynomial_value(std::span<const double> g, double s) {
-  double sum = 0.0;
-  for (std::size_t k = g.size(); k-- > 0;) sum = sum * s + g[k];
-  return sum;
+  const double square = s * s;
+  std::size_t k = g.size();
+  double odd = 0.0, even = k % 2 == 1 ? g[--k] : 0.0;
+  for (; k > 0; k -= 2) {
+    odd = odd * square + g[k - 1];
+    even = even * square + g[k - 2];
+  }
+  return even + s * odd;
 }
 
 double polynomial_slope(std::span<const double> g, double s) {
-  double sum = 0.0;
-  for (std::size_t k = g.size(); k-- > 1;) sum = sum * s + static_cast<double>(k) * g[k];
-  return sum;
+  const double square = s * s;
+  std::size_t k = g.size();
+  double odd = 0.0, even = 0.0;
+  if (k % 2 == 1) {
+    --k;
+    even = static_cast<double>(k) * g[k];
+  }
+  for (; k > 2; k -= 2) {
+    odd = odd * square + static_cast<double>(k - 1) * g[k - 1];
+    even = even * square + static_cast<double>(k - 2) * g[k - 2];
+  }
+  return k == 2 ? odd * square + g[1] + s * even : 0.0;
 }
 
 std::optional<double> first_crossing(std::span<const double> g, double end) {

@@ -77,6 +77,7 @@ bool KinkResponse::list(double end, const double* z_end, double share) {
 bool KinkResponse::look(double share) {
   found_ = slopes_changed_ = limited_ = corrects_ = false;
   limit_ = 1.0;
+  rate_step_ = series_.rate() * series_.step();
   return list(1.0, nullptr, share);
 }
 
@@ -85,7 +86,7 @@ bool KinkResponse::find_size(double end, double share) {
   if (count == 0) return true;
   if (count > kMostKinks) return false;
   // |y| <= pull end^3/6, and each degree of the sweep adds rate h end/(j + 3) of the one before.
-  const double h = series_.step(), growth = series_.rate() * h * end;
+  const double h = series_.step(), growth = rate_step_ * end;
   double scale = 0.0;
   for (std::size_t kind = 0; kind < 2; ++kind)
     if (series_.z_scale()[kind] > 0.0)
@@ -111,8 +112,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   laws_.use_slopes(series_, end);
   slopes_changed_ = true;
   const int degree = size_.degree;
-  const Rule rule =
-      rule_for(size_.response, series_.rate() * series_.step() * end, kOfShare * share, size_.scale, end);
+  const Rule rule = rule_for(size_.response, rate_step_ * end, kOfShare * share, size_.scale, end);
   loads_.expand_kinks(series_, rule.terms);
   TaylorSeries::RowMoments moments = kinks.find_moments(end, degree, rule.nodes, rule.place_terms);
   moments.own_rows = !loads_.kinks_share_rows();

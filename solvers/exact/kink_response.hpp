@@ -73,10 +73,7 @@ class KinkResponse {
   double nearness(int row, const ScalarTerm& law, double d) const;
   bool find_limit(double end, double allowed, double scale);
   /// (rate h)^2/4: |k| h^2/m of a row's coupling in a chain of equal rows.
-  double quarter_rate_square() const {
-    const double times_step = series_.rate() * series_.step();
-    return 0.25 * times_step * times_step;
-  }
+  double quarter_rate_square() const { return 0.25 * rate_step_ * rate_step_; }
 
   TaylorSeries& series_;
   LoadSeries& loads_;
@@ -85,6 +82,7 @@ class KinkResponse {
   // This step's sweep takes what slopes of laws change towards the end, which is so much of the motion over the whole of it.
   bool corrects_ = false;
   double uncorrected_ = 0.0;
+  double rate_step_ = 0.0;  // (rate h) of this step
   double listed_to_ = 0.0, end_ = 0.0, limit_ = 1.0;
   Size size_;
   struct OnRow {

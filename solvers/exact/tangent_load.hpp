@@ -21,8 +21,8 @@ struct PlacedLoad {
   const LoadTerm* term = nullptr;
   int row = 0;
   double coeff = 0.0, ratio = 0.0;
-  bool feedback = false;                             // follows the actual motion
-  double turn = 0.0, per_turn = 0.0;                 // of the angle by its row: coeff and 1/coeff; without feedback 0
+  bool feedback = false;              // follows the actual motion
+  double turn = 0.0, per_turn = 0.0;  // of the angle by its row: coeff and 1/coeff; without feedback 0
   double angle = 0.0, deviation = 0.0, speed = 0.0;  // rad, rad/s
   bool watched = false;                              // its angle may turn back in this step
   double contraction = 0.0;                          // by its kinks in this step: LoadSeries::Pass

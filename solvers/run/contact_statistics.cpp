@@ -137,7 +137,10 @@ bool ContactStatistics::may_rise_inside(std::size_t i, const EvaluatedState& fro
   for (const Entry& e : rows_[i]) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
   if (in_unknowns_[i]) {
     const auto reach = force_reach(*motion_, law, from, to, beyond);
-    if (reach && std::max(-reach->low, reach->high) <= (1.0 + kLargestOfContact) * largest) return false;
+    if (reach && std::max(-reach->low, reach->high) <= (1.0 + kLargestOfContact) * largest) {
+      largest_inside_[i] = 0.0;  // no more than at the step's ends, which are noted anyway, or before
+      return false;
+    }
   }
   const auto range = motion_->force_range(law);
   if (!range) return true;

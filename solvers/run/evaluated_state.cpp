@@ -16,8 +16,9 @@ void evaluate_laws(const Assembler& assembler, EvaluatedState& point) {
   point.inputs.resize(terms.size());
   point.responses.resize(terms.size());
   for (std::size_t j = 0; j < terms.size(); ++j) {
-    point.inputs[j] = assembler.input(terms[j], point.state.z, point.state.v);
-    point.responses[j] = terms[j].force->evaluate(point.inputs[j]);
+    // In place: a copy of what was stored field by field just before has to wait until that is in memory.
+    new (&point.inputs[j]) ScalarInput(assembler.input(terms[j], point.state.z, point.state.v));
+    new (&point.responses[j]) ScalarResponse(terms[j].force->evaluate(point.inputs[j]));
   }
 }
 

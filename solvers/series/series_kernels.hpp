@@ -21,7 +21,7 @@ inline constexpr auto kInverse = [] {
 struct DiagonalView {
   int offset;
   const double* values;
-  int only = -1;  ///< in a block of rows: the column of its entry there, where it has only one
+  int only;  ///< in a block of rows: the column of its entry there, where it has only one; else -1
 };
 
 /// The diagonals that have entries in each block of kLanes rows: views[begin[i]] to views[begin[i + 1] - 1] of
@@ -29,6 +29,7 @@ struct DiagonalView {
 struct BlockDiagonals {
   const int* begin;
   const DiagonalView* views;
+  bool single = false;  ///< each block has one view at most, with one entry
 };
 
 /// Forces on few rows, in one or two rows of lanes: of P_k on row i at values[from[i] - k step]; kMost of those without any.

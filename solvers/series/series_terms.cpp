@@ -163,7 +163,7 @@ struct Chain {
     if constexpr (kBeside == Beside::single_entries)
       for (int b = 0; b < kBlocks; ++b)
         if (const DiagonalView* view = r.k.views + r.k.begin[b]; r.k.begin[b + 1] > r.k.begin[b])
-          single[idx(b)] = {b * kLanes + view->offset, view->values + b * kLanes};
+          single[idx(b)] = {b * kLanes + view->offset, view->values + b * kLanes, view->only};
   }
   static void take_back(int) {}
   /// sum += the entries elsewhere.
@@ -316,15 +316,9 @@ struct ChainTerms {
 constexpr int kMostBlocks = 6;  // of lanes in a column, over which loops are unrolled
 
 Beside beside_chain(const SeriesRecursion& r) {
-  const int blocks = r.stride / kLanes, *begin = r.k.begin;
   if (r.c_main == nullptr) return Beside::any;
-  if (begin[blocks] == 0) return Beside::nothing;
-  const bool single =
-      blocks <= kMostBlocks &&
-      std::adjacent_find(begin, begin + blocks + 1, [](int a, int b) { return b > a + 1; }) ==
-          begin + blocks + 1 &&
-      std::all_of(r.k.views, r.k.views + begin[blocks], [](const auto& view) { return view.only >= 0; });
-  return single ? Beside::single_entries : Beside::any;
+  if (r.k.begin[r.stride / kLanes] == 0) return Beside::nothing;
+  return r.k.single && r.stride <= kMostBlocks * kLanes ? Beside::single_entries : Beside::any;
 }
 
 template <bool kSweep, int kBlocks>

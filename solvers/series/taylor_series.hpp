@@ -280,6 +280,7 @@ class TaylorSeries {
   double* k_main_ = nullptr;                     // that of K now
   std::vector<DiagonalView> k_views_, c_views_;  // of each block of lanes
   std::vector<int> block_begin_;
+  bool single_views_ = false;    // BlockDiagonals::single
   Chain k_chain_{}, c_chain_{};  // where nearly all of them are the main one and its neighbours: these
   bool undamped_ = false, base_main_damping_ = false;  // properties of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
