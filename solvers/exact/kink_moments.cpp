@@ -33,7 +33,7 @@ struct Angles {
                                          const double* ratio, const double* turn, const double* columns,
                                          int stride, std::size_t known, std::size_t terms, double phi_1,
                                          double phi_2, double* theta) {
-    L are, from, by, x;
+    L are, from, by, x{};
     load(kinks, are);
     load(angle, from);
     load(turn, by);
@@ -227,7 +227,7 @@ struct KinkMoments::Work {
     for (int i = 0; i < kinks->count_; i += kLanes) {
       const auto at = [&](Quantity q) __attribute__((always_inline)) { return kinks->table_.at(q) + i; };
       const int* row = kinks->row_.data() + i;
-      L behind, knot, turn, x, along, along_2;
+      L behind, knot, turn, x{}, along, along_2;
       load(at(kTurn), turn);
       load(at(kEnd), behind);
       load(at(kKnot), knot);

@@ -242,7 +242,7 @@ void StraightLoads::look_up(Load& l, double t, double direction) {
   if (l.table >= 0) {
     const TableStretches& table = tables_[idx(l.table)];
     l.place = table.find(l.angle, l.phase, direction);
-    table.find(l.place, l.stretch);
+    table.read(l.place, l.stretch);
     if (table.bounded()) l.angle_0 = l.stretch.low;
   } else {
     l.stretch = l.term->load->stretch(t, l.angle, direction).value_or(LoadStretch{});
@@ -281,7 +281,7 @@ void StraightLoads::advance(double t, bool whole) {
       if (l.watched) continue;
       if (l.table >= 0) {
         l.place = l.ahead_place;
-        tables_[idx(l.table)].find(l.place, l.stretch);
+        tables_[idx(l.table)].read(l.place, l.stretch);
         l.angle_0 = l.stretch.low;
       } else {
         l.stretch = l.ahead;

@@ -36,7 +36,7 @@ class TableStretches {
   double high(Place p) const { return low(next(p, true)); }
   double slope(Place p) const { return stretches_[p.number].slope; }
   /// With the torque at its lower bound. One number after the other: a copy of what was just stored in parts has to wait for it.
-  void find(Place p, LoadStretch& to) const {
+  void read(Place p, LoadStretch& to) const {
     const Stretch& s = stretches_[p.number];
     to.torque = s.torque;
     to.time_slope = 0.0;

@@ -306,7 +306,7 @@ struct ChainTerms {
   template <class L>
   [[gnu::always_inline]] static void run(const SeriesRecursion* recursion, int first, int last,
                                          double* sizes) {
-    if constexpr (kBlocks > 0 && kBeside != Beside::any && std::is_same_v<L, Lanes>)
+    if constexpr (kBlocks > 0 && kBeside != Beside::any && !std::is_same_v<L, LanePair>)
       if (!kSweep || recursion->packed.values != nullptr)
         return all_terms<L>(ShortChain<kSweep, kBlocks, kBeside, L>(*recursion, first), first, last, sizes);
     all_terms<L>(Chain<kSweep, kBlocks, kBeside>(*recursion), first, last, sizes);

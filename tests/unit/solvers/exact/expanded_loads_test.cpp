@@ -12,6 +12,7 @@
 
 #include "solvers/exact/kink_moments.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/solvers/exact/placed_load.hpp"
 
 using namespace drev;
 
@@ -106,21 +107,22 @@ TEST_CASE("Smooth loads as series, kinks and a mesh with damping together: the m
 TEST_CASE("Moments of a curved force behind a knot: in closed form along a straight path") {
   // theta = 0.1 + 0.4 s passes 0.22 at s = 0.3; the force c_1 x + c_2 x^2 + c_3 x^3 of x = 0.4 u, u = s - 0.3.
   const std::vector<double> force{3.0, -7.0, 11.0};
-  const double theta[] = {0.1, 0.4}, place = 0.3, rate = 0.4, end = 0.9, r = end - place;
+  const double place = 0.3, rate = 0.4, end = 0.9, r = end - place;
   KinkMoments kinks;
-  kinks.add(1, 0.22, 1.0, force, 0.1 + 0.4 * end);
-  kinks.set_terms(2);
-  for (std::size_t k = 0; k < 2; ++k) kinks.angle(0)[k * kLanes] = theta[k];
+  const PlacedLoad load = load_on(1, 0.1);
+  kinks.add(load, 0.22, force, 0.1 + 0.4 * end);
   constexpr int kDegree = 6, kStride = 8;
-  std::vector<double> columns((kDegree + 1) * kStride);
-  kinks.add_to_sweep(end, kDegree, 8, 2, kStride, columns.data());
+  std::vector<double> columns(2 * kStride);
+  columns[kStride + 1] = rate;
+  kinks.expand(columns.data(), kStride, 2, 3, {});
+  const auto moments = kinks.find_moments(end, kDegree, 8, 3);
   CHECK(kinks.place(0) == Approx(place).epsilon(1e-9));
   for (int j = 0; j <= kDegree; ++j) {
     double truth = 0.0;  // int_0^r (r - u)^j/j! u^q du = q! r^(j+q+1)/(j+q+1)!
     for (int q = 1; q <= 3; ++q)
       truth += force[static_cast<std::size_t>(q - 1)] * std::pow(rate, q) * std::tgamma(q + 1) *
                std::pow(r, j + q + 1) / std::tgamma(j + q + 2);
-    CHECK(kinks.moment(0, j) == Approx(truth).epsilon(1e-12));
+    CHECK(moments.values[j * moments.step] == Approx(truth).epsilon(1e-12));
   }
   const double x = rate * r;
   const KinkMoments::Force f = kinks.force(0, x);

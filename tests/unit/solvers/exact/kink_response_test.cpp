@@ -11,6 +11,7 @@
 
 #include "solvers/exact/kink_moments.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/solvers/exact/placed_load.hpp"
 
 using namespace drev;
 
@@ -21,21 +22,71 @@ TEST_CASE("Moments of kinks for a sweep: in closed form along a quadratic path")
   const double place = -0.2 + std::sqrt(0.04 + 0.24), rate = 0.2 + place, jump = 30.0;
   for (const double end : {1.0, 0.7}) {
     KinkMoments kinks;
-    kinks.add(2, 0.12, 1.0, {&jump, 1}, end * (0.2 + 0.5 * end));
-    kinks.set_terms(theta.size());
-    for (std::size_t k = 0; k < theta.size(); ++k) kinks.angle(0)[k * kLanes] = theta[k];
+    const PlacedLoad load = load_on(2);
+    kinks.add(load, 0.12, {&jump, 1}, end * (0.2 + 0.5 * end));
     constexpr int kDegree = 9, kStride = 8;
-    std::vector<double> columns((kDegree + 1) * kStride);
-    kinks.add_to_sweep(end, kDegree, 8, theta.size(), kStride, columns.data());
+    std::vector<double> columns(theta.size() * kStride);  // half of theta by the row, half by the nominal motion
+    for (std::size_t k = 0; k < theta.size(); ++k) columns[k * kStride + 2] = 0.5 * theta[k];
+    kinks.expand(columns.data(), kStride, theta.size(), theta.size(), {0.0, 0.5 * theta[1], 0.5 * theta[2]});
+    const auto moments = kinks.find_moments(end, kDegree, 8, theta.size());
     CHECK(kinks.place(0) == Approx(place).epsilon(1e-9));
+    REQUIRE(moments.count == 1);
+    CHECK(moments.rows[0] == 2);
     double power = end - place, factorial = 1.0;  // r^(j+1), (j+1)!
     for (int j = 0; j <= kDegree; ++j, power *= end - place, factorial *= j + 1) {
       const double r = end - place;
       const double truth = jump * power * r / (factorial * (j + 2)) * (rate + r / (j + 3));
-      CHECK(kinks.moment(0, j) == Approx(truth).epsilon(1e-13));
-      CHECK(columns[static_cast<std::size_t>((kDegree - j) * kStride + 2)] == Approx(truth).epsilon(1e-13));
+      CHECK(moments.values[j * moments.step] == Approx(truth).epsilon(1e-13));
+      for (int lane = 1; lane < kLanes; ++lane) CHECK(moments.values[j * moments.step + lane] == 0.0);
     }
+    // The row moves by half of theta: work of the force on it.
+    std::vector<double> none(kStride);
+    const double work = kinks.work(0.5 * (0.2 + end), 0.5, none.data(), none.data(), none.data());
+    const double r = end - place;  // int jump (rate u + u^2/2) (rate + u)/2 du
+    CHECK(work == Approx(0.25 * jump * std::pow(rate * r + 0.5 * r * r, 2)).epsilon(1e-13));
   }
+}
+
+TEST_CASE("Work of kinks: beside Gauss's rule, with what they add to the motion") {
+  // theta = turn (z + y) + phi with z = 0.3 s - 0.1 s^2 and y = bend (s - place)^3 from the knot on. Straight forces, and curved ones
+  // without y, whose slope at the end stands for all.
+  const std::vector<double> z{0.0, 0.3, -0.1}, force{40.0, -300.0, 1000.0};
+  const std::array<double, 3> phi{0.0, 0.9, 0.2};
+  constexpr int kStride = 16, kKinks = 11;
+  const double end = 0.8;
+  const auto place = [](int i) { return 0.25 + 0.04 * i; };
+  for (const double turn : {1.0, -0.5, 2.5})
+    for (const bool curved : {false, true}) {
+      INFO("turn " << turn << (curved ? ", curved" : ", straight"));
+      const double bend = curved ? 0.0 : 0.4;
+      const auto used = std::span(force).first(curved ? force.size() : 1);
+      const auto angle = [&](double s) { return turn * (z[1] * s + z[2] * s * s) + phi[1] * s + phi[2] * s * s; };
+      KinkMoments kinks;
+      std::vector<double> columns(3 * kStride), y(kStride), y_sum(kStride), y_sum_2(kStride);
+      double truth = 0.0;
+      for (int i = 0; i < kKinks; ++i) {
+        const auto row = static_cast<std::size_t>(i);
+        kinks.add(load_on(i, 0.0, turn), angle(place(i)), used, angle(end));
+        for (std::size_t k = 0; k < 3; ++k) columns[k * kStride + row] = z[k];
+        const double r = end - place(i);
+        y[row] = bend * std::pow(r, 3);
+        y_sum[row] = bend * std::pow(r, 4) / 4.0;
+        y_sum_2[row] = bend * std::pow(r, 5) / 20.0;
+        const GaussRule& rule = gauss_rule();
+        for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+          const double u = r * rule.s[q], s = place(i) + u;
+          const double x = angle(s) + turn * bend * u * u * u - angle(place(i));
+          double f = 0.0;
+          for (std::size_t k = used.size(); k-- > 0;) f = (f + turn * used[k]) * x;
+          truth += rule.weight[q] * r * f * (z[1] + 2.0 * z[2] * s + 3.0 * bend * u * u);
+        }
+      }
+      kinks.expand(columns.data(), kStride, 3, 3, phi);
+      kinks.find_moments(end, 8, 8, 3);
+      for (int i = 0; i < kKinks; ++i) CHECK(kinks.place(i) == Approx(place(i)).epsilon(1e-9));
+      CHECK(kinks.work(phi[1] + 2.0 * phi[2] * end, 2.0 * phi[2], y.data(), y_sum.data(), y_sum_2.data()) ==
+            Approx(truth).epsilon(1e-12));
+    }
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include "solvers/exact/kink_moments.hpp"
 #include "solvers/series/legendre_projection.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/solvers/exact/placed_load.hpp"
 
 using namespace drev;
 
@@ -49,10 +50,13 @@ TEST_CASE("Kinks: their projection has the moments of what it stands for") {
     for (int i = 0; i < 20; ++i) {
       places.push_back(i == 0 ? 0.0 : i == 19 ? 1.0 : 0.03 + 0.05 * i);
       const double jump = 500.0 + i;
-      kinks.add(i, value(theta, places.back()), 1.0, {&jump, 1}, value(theta, 1.0));
-      for (std::size_t k = 0; k < theta.size(); ++k) kinks.angle(i)[k * kLanes] = theta[k];
+      kinks.add(load_on(i, theta[0]), value(theta, places.back()), {&jump, 1}, value(theta, 1.0));
     }
-    kinks.set_terms(theta.size());
+    const int stride = whole_lanes(20);
+    std::vector<double> columns(theta.size() * static_cast<std::size_t>(stride));
+    for (std::size_t k = 1; k < theta.size(); ++k)
+      std::fill_n(columns.begin() + static_cast<std::ptrdiff_t>(k) * stride, 20, theta[k]);
+    kinks.expand(columns.data(), stride, theta.size(), theta.size(), {});
     kinks.add_to(projection);
     for (int i = 0; i < 20; ++i)
       for (int j = 0; j < kProjectionTerms; ++j) {

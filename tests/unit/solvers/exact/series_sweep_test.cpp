@@ -1,0 +1,98 @@
+// Sweeps of forces on few rows beside powers of the dense matrix, for chains and trees of several sizes.
+// Covers solvers/series/series_sweep.cpp and, through it, series_kernels.hpp.
+#include <drev/elements/catalogue.hpp>
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "solvers/series/taylor_series.hpp"
+#include "tests/catch.hpp"
+
+using namespace drev;
+
+namespace {
+
+enum class Shape { chain, branch, ladder };
+
+/// Discs on shafts one behind the other from the ground on: alone; with one shaft that leads back; or with many.
+Model discs(int count, Shape shape, bool shafts_damp) {
+  Model m("discs");
+  const auto node = [](int i) { return "n" + std::to_string(i); };
+  for (int i = 0; i < count; ++i) {
+    m.add_node(node(i));
+    m.add<Inertia>("J" + node(i), {node(i)}, {.inertia = 0.1 + 0.01 * (i % 7)});
+    m.add<GroundSpring>("c" + node(i), {node(i)}, {.stiffness = i == 0 ? 2e4 : 10.0, .damping = 1.0 + i % 3});
+    if (i > 0)
+      m.add<ShaftSpring>("k" + node(i), {node(i - 1), node(i)},
+                         {.stiffness = 2e4 + 300.0 * (i % 5), .damping = shafts_damp ? 2.0 : 0.0});
+  }
+  if (shape != Shape::chain)
+    for (int i = 0; i + count / 2 < count; i += shape == Shape::branch ? count : 1)
+      m.add<ShaftSpring>("back" + node(i), {node(i), node(i + count / 2)}, {.stiffness = 1e4});
+  return m;
+}
+
+Eigen::MatrixXd dense(const System& system, const Vector& values) {
+  SparseMatrix m = system.pattern();
+  std::copy(values.begin(), values.end(), m.valuePtr());
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("A sweep of forces on few rows is the dense matrix's series, whatever the layout") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> size(-1.0, 1.0);
+  for (const int count : {3, 8, 13, 39, 40, 47, 48, 60})
+    for (const Shape shape : {Shape::chain, Shape::branch, Shape::ladder})
+      for (const bool shafts_damp : {false, true}) {
+        const System system = discs(count, shape, shafts_damp).build();
+        const double h = 3.0 / 900.0;
+        TaylorSeries series(system);
+        series.bound_rates();
+        series.reset();
+        REQUIRE(series.expand(Vector::Ones(count), Vector::Ones(count), h, 1e-12) == h);
+        const Eigen::MatrixXd inverse = dense(system, system.mass_values()).inverse();
+        Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2 * count, 2 * count);  // A of (y, u), u by s
+        a.topRightCorner(count, count).setIdentity();
+        a.bottomLeftCorner(count, count) = -h * h * inverse * dense(system, system.stiffness_values());
+        a.bottomRightCorner(count, count) = -h * inverse * dense(system, system.damping_values());
+        for (const int forces : {1, 8, 9, 15, 16, 23}) {
+          if (forces > count) continue;
+          for (const bool own_rows : {true, false}) {
+            INFO(count << " discs, shape " << static_cast<int>(shape) << ", " << forces << " forces"
+                       << (own_rows ? "" : " on shared rows"));
+            constexpr int kDegree = 17;
+            const int step = whole_lanes(forces);
+            std::vector<int> rows;
+            LaneVector values(static_cast<std::size_t>((kDegree + 1) * step));
+            Eigen::MatrixXd w = Eigen::MatrixXd::Zero(2 * count, kDegree + 1);
+            for (int i = 0; i < forces; ++i) {
+              rows.push_back(own_rows ? (i * 5 + 2) % count : i % 2);
+              if (own_rows && std::count(rows.begin(), rows.end(), rows.back()) > 1) rows.back() = -1;
+            }
+            // Rows that a step of 5 did not reach, where it divides the count.
+            for (int& row : rows)
+              for (int free = 0; row < 0; ++free)
+                if (std::find(rows.begin(), rows.end(), free) == rows.end()) row = free;
+            for (int i = 0; i < forces; ++i) {
+              double factorial = 1.0;
+              for (int j = 0; j <= kDegree; factorial *= ++j + 1) {
+                const double moment = 500.0 * size(random) / factorial;
+                values[static_cast<std::size_t>(j * step + i)] = moment;
+                w.col(j).tail(count) += h * h * moment * inverse.col(rows[static_cast<std::size_t>(i)]);
+              }
+            }
+            series.sweep({forces, rows.data(), values.data(), step, own_rows}, kDegree);
+            for (int part = 0; part < TaylorSeries::kSweptParts; ++part) {
+              Eigen::VectorXd y = Eigen::VectorXd::Zero(2 * count);
+              for (int j = kDegree; j >= part; --j) y = a * y + w.col(j);
+              const auto found = Eigen::Map<const Vector>(series.swept(part), count);
+              CHECK((found - y.head(count)).norm() < 1e-13 * y.norm());
+              if (part > 0) continue;
+              CHECK((Eigen::Map<const Vector>(series.swept(-1), count) - y.tail(count)).norm() < 1e-13 * y.norm());
+            }
+          }
+        }
+      }
+}
