@@ -26,19 +26,19 @@ template <class L>
   at_end = at_end * kinks + (1.0 - kinks);
 }
 
-/// turn Z_k + ratio phi_k of kLanes kinks.
+/// The terms of kLanes angles: turn Z_k + ratio phi_k; theta = s in lanes without a kink.
 struct Angles {
   template <class L>
-  [[gnu::always_inline]] static void run(const int* row, const double* kinks, const double* angle,
+  [[gnu::always_inline]] static void run(const int* row, const double* lanes, const double* angle,
                                          const double* ratio, const double* turn, const double* columns,
                                          int stride, std::size_t known, std::size_t terms, double phi_1,
                                          double phi_2, double* theta) {
-    L are, from, by, x{};
-    load(kinks, are);
-    load(angle, from);
+    L kinks, by, x{};
+    load(lanes, kinks);
+    load(angle, x);
+    store(kinks * x, theta);
     load(turn, by);
-    by *= are;
-    store(are * from, theta);
+    by *= kinks;
     const double* column = columns + stride;
     for (std::size_t k = 1; k < known; ++k, column += stride) {
       gather(column, row, x);
@@ -46,9 +46,9 @@ struct Angles {
     }
     for (std::size_t k = known; k < terms; ++k) store(L{}, theta + k * kLanes);
     load(ratio, by);
-    by *= are;
+    by *= kinks;
     load(theta + kLanes, x);
-    x += phi_1 * by + (1.0 - are);
+    x += phi_1 * by + (1.0 - kinks);
     store(x, theta + kLanes);
     load(theta + 2 * kLanes, x);
     x += phi_2 * by;
@@ -219,6 +219,8 @@ struct SweepRule : NodesAndWeights<kNodes> {
 
 }  // namespace
 
+/// int f dz of kinks, z = (theta - ratio phi)/turn: of f(theta_e + turn y - knot) in closed form, less ratio int f phi' ds, where f bends
+/// by its slope at the end times turn y.
 struct KinkMoments::Work {
   template <class L>
   [[gnu::always_inline]] static double run(const KinkMoments* kinks, double rate, double bend,

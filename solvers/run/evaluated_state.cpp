@@ -1,6 +1,8 @@
 #include <drev/core/assembler.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
 
+#include <new>
+
 #include "solvers/linear/huge_pages.hpp"
 
 namespace drev {
