@@ -1,4 +1,4 @@
-// TaylorSeries: what forces inside a step add to its end.
+// TaylorSeries: what forces inside a step add to its end, and terms without the kernel.
 #include <cmath>
 
 #include "solvers/series/taylor_series.hpp"
@@ -9,6 +9,19 @@ bool TaylorSeries::sweeps() const {
   return row_slopes_.size() == 0 &&
          std::none_of(term_forces_.begin(), term_forces_.end(),
                       [](const TermForces* forces) { return forces->active() && !forces->sweeps(); });
+}
+
+/// One term without the kernel: where the mass has to be solved for, or no diagonals are kept.
+void TaylorSeries::product_term(const SeriesRecursion& r, int k) {
+  const double* p = k - 2 <= r.p_degree ? r.p + idx((k - 2 - r.p_first) * stride_) : zeros_.data();
+  std::copy_n(p, n_, solve_in_.data());
+  subtract_product(k_.now, false, r.z + idx((k - 2) * stride_), 1.0, solve_in_.data());
+  if (damped_)
+    subtract_product(c_.now, main_damping_, r.z + idx((k - 1) * stride_), r.damping_factor(k) / h_,
+                     solve_in_.data());
+  solve_mass(solve_in_, solve_out_);
+  double* next = r.z + idx(k * stride_);
+  for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * (h_ * h_ * r.factor(k));
 }
 
 SeriesRecursion TaylorSeries::sweep_recursion(int degree) {

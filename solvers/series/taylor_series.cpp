@@ -381,19 +381,6 @@ void TaylorSeries::next_terms(int first, int last) {
   for (int k = first; k <= last; ++k) sizes_[idx(k)] = next_term(k);
 }
 
-/// One term without the kernel: where the mass has to be solved for, or no diagonals are kept.
-void TaylorSeries::product_term(const SeriesRecursion& r, int k) {
-  const double* p = k - 2 <= r.p_degree ? r.p + idx((k - 2 - r.p_first) * stride_) : zeros_.data();
-  std::copy_n(p, n_, solve_in_.data());
-  subtract_product(k_.now, false, r.z + idx((k - 2) * stride_), 1.0, solve_in_.data());
-  if (damped_)
-    subtract_product(c_.now, main_damping_, r.z + idx((k - 1) * stride_), r.damping_factor(k) / h_,
-                     solve_in_.data());
-  solve_mass(solve_in_, solve_out_);
-  double* next = r.z + idx(k * stride_);
-  for (int i = 0; i < n_; ++i) next[i] = solve_out_[i] * (h_ * h_ * r.factor(k));
-}
-
 TaylorSeries::Norm TaylorSeries::next_term(int k) {
   SeriesRecursion one = recursion();
   if (row_slopes_.size() > 0) {

@@ -25,7 +25,8 @@ TEST_CASE("Moments of kinks for a sweep: in closed form along a quadratic path")
     const PlacedLoad load = load_on(2);
     kinks.add(load, 0.12, {&jump, 1}, end * (0.2 + 0.5 * end));
     constexpr int kDegree = 9, kStride = 8;
-    std::vector<double> columns(theta.size() * kStride);  // half of theta by the row, half by the nominal motion
+    std::vector<double> columns(theta.size() *
+                                kStride);  // half of theta by the row, half by the nominal motion
     for (std::size_t k = 0; k < theta.size(); ++k) columns[k * kStride + 2] = 0.5 * theta[k];
     kinks.expand(columns.data(), kStride, theta.size(), theta.size(), {0.0, 0.5 * theta[1], 0.5 * theta[2]});
     const auto moments = kinks.find_moments(end, kDegree, 8, theta.size());
@@ -60,7 +61,9 @@ TEST_CASE("Work of kinks: beside Gauss's rule, with what they add to the motion"
       INFO("turn " << turn << (curved ? ", curved" : ", straight"));
       const double bend = curved ? 0.0 : 0.4;
       const auto used = std::span(force).first(curved ? force.size() : 1);
-      const auto angle = [&](double s) { return turn * (z[1] * s + z[2] * s * s) + phi[1] * s + phi[2] * s * s; };
+      const auto angle = [&](double s) {
+        return turn * (z[1] * s + z[2] * s * s) + phi[1] * s + phi[2] * s * s;
+      };
       KinkMoments kinks;
       std::vector<double> columns(3 * kStride), y(kStride), y_sum(kStride), y_sum_2(kStride);
       double truth = 0.0;

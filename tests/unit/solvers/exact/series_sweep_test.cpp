@@ -90,7 +90,8 @@ TEST_CASE("A sweep of forces on few rows is the dense matrix's series, whatever 
               const auto found = Eigen::Map<const Vector>(series.swept(part), count);
               CHECK((found - y.head(count)).norm() < 1e-13 * y.norm());
               if (part > 0) continue;
-              CHECK((Eigen::Map<const Vector>(series.swept(-1), count) - y.tail(count)).norm() < 1e-13 * y.norm());
+              CHECK((Eigen::Map<const Vector>(series.swept(-1), count) - y.tail(count)).norm() <
+                    1e-13 * y.norm());
             }
           }
         }
