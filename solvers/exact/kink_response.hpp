@@ -89,8 +89,7 @@ class KinkResponse {
     double place = 0.0, pull = 0.0;
   };
   std::vector<OnRow> on_row_;  // of the kink on each row, while they are bounded; zeros: none
-  LaneVector moments_;         // zeros between sweeps
-  LaneVector again_;           // the same for a second sweep
+  LaneVector moments_;         // in columns, where laws add to them
 };
 
 }  // namespace drev

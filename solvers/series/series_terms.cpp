@@ -241,9 +241,11 @@ struct ShortChain {
     take(first - 2, older);
     take(first - 1, newer);
   }
-  /// Where term m is put: those that are not kept into four columns in turn.
+  /// Where term m is put: those that are not kept into kTurns columns in turn, where these lie ahead of all that are.
+  static constexpr int kTurns = 4;
   [[gnu::always_inline]] double* place(int m) const {
-    if constexpr (kSweep) m = m < 2 || m >= r.first_kept ? m : 2 + m % 4;
+    if constexpr (kSweep)
+      if (m >= 2 && m < r.first_kept && r.first_kept >= 2 + kTurns) m = 2 + m % kTurns;
     return term_of(r.z, kBlocks * kLanes, m);
   }
   [[gnu::always_inline]] void take(int m, L (&term)[kBlocks]) const {
