@@ -245,11 +245,13 @@ template <class L>
   to.high = __builtin_shufflevector(x.high, behind.low, 1, 2, 3, 4);
 }
 
-/// to = lane index[lane] of `low` and, from kLanes on, of `high`.
+#ifdef DREV_SERIES_LEVELS
+/// to = lane index[lane] of `low` and, from kLanes on, of `high`. For loops on whole Lanes alone.
 [[gnu::always_inline]] inline void pick(const Lanes& low, const Lanes& high, const LaneMask& index,
                                         Lanes& to) {
   to = __builtin_shuffle(low, high, index);
 }
+#endif
 /// Whether loops run on whole Lanes, one in a register.
 inline bool lanes_fill_a_register() {
 #ifdef DREV_SERIES_LEVELS
