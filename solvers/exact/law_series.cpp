@@ -60,6 +60,7 @@ LawSeries::LawSeries(const System& system) : system_(system), laws_(system.scala
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system.scalars()[j];
     Law& law = laws_[j];
+    law.number = static_cast<int>(j);
     const std::span<const LawPiece> own = linear_pieces(term);
     law.pieces = own.empty() ? bounds_alone(*term.force) : std::vector<LawPiece>(own.begin(), own.end());
     law.expanded = ExpandedLaws::takes(term);
@@ -118,18 +119,13 @@ void LawSeries::add_stiffest(TaylorSeries& series) const {
 }
 
 void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, const LawOffsets& offsets,
-                       const ScaleSeries& scale_of) {
-  const auto terms = static_cast<std::size_t>(series.degree()) + 1;
+                       const double* sizes, const ScaleSeries& scale_of) {
   h_ = series.step();
   series_ = &series;
   offsets_ = &offsets;
   for (std::size_t j = 0; j < laws_.size(); ++j) {
     const ScalarTerm& term = system_.scalars()[j];
     Law& law = laws_[j];
-    const std::vector<double>& offset = offsets.offset(static_cast<int>(j));
-    const std::size_t count = std::max(terms, offset.size());
-    row_.assign(idx(whole_lanes(static_cast<int>(count))), 0.0);
-    std::copy(offset.begin(), offset.end(), row_.begin());
     law.known.fill(0.0);
     law.known_size.fill(0.0);
     for (const Entry& e : term.u)
@@ -137,20 +133,50 @@ void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, cons
         const double part = e.coeff * known.prescribed(e.index)[k];
         law.known[k] += part;
         law.known_size[k] += std::abs(part);
-        row_[k] += part;
       }
-    const auto sums =
-        add_row_terms(series.stride(), static_cast<int>(terms), series.coefficients(0), term.z, row_.data());
-    law.reach = sums[0];
-    law.rate_reach = sums[1];
-    // Of an offset's longer series.
-    for (auto k = idx(whole_lanes(static_cast<int>(terms))); k < count; ++k) {
-      law.reach += std::abs(row_[k]);
-      law.rate_reach += static_cast<double>(k) * std::abs(row_[k]);
-    }
-    law.x.assign(row_.begin(), row_.begin() + static_cast<std::ptrdiff_t>(count));
+    law.whole = false;
     if (law.scaled) scale_of(static_cast<int>(j), law.scale);
+    const std::vector<double>& offset = offsets.offset(static_cast<int>(j));
+    if (sizes == nullptr || offset.size() > 1) {
+      const std::vector<double>& x = series_of(law);
+      law.x_0 = x[0];
+      law.x_1 = x[1];
+      continue;
+    }
+    law.x_0 = law.known[0] + (offset.empty() ? 0.0 : offset[0]);
+    law.x_1 = law.known[1];
+    law.reach = std::abs(law.known[1]) + std::abs(law.known[2]);
+    law.rate_reach = 2.0 * std::abs(law.known[2]);
+    for (const Entry& e : term.z) {
+      law.x_0 += e.coeff * series.coefficient(0, e.index);
+      law.x_1 += e.coeff * series.coefficient(1, e.index);
+      law.reach += std::abs(e.coeff) * sizes[e.index];
+      law.rate_reach += std::abs(e.coeff) * sizes[series.stride() + e.index];
+    }
   }
+}
+
+/// The series of a law's deflection: summed up when first asked for, since most steps keep clear of its bounds.
+const std::vector<double>& LawSeries::series_of(const Law& law) const {
+  if (law.whole) return law.x;
+  law.whole = true;
+  const auto terms = static_cast<std::size_t>(series_->degree()) + 1;
+  const std::vector<double>& offset = offsets_->offset(law.number);
+  const std::size_t count = std::max(terms, offset.size());
+  row_.assign(idx(whole_lanes(static_cast<int>(count))), 0.0);
+  std::copy(offset.begin(), offset.end(), row_.begin());
+  for (std::size_t k = 0; k < law.known.size(); ++k) row_[k] += law.known[k];
+  const auto sums = add_row_terms(series_->stride(), static_cast<int>(terms), series_->coefficients(0),
+                                  system_.scalars()[idx(law.number)].z, row_.data());
+  law.reach = sums[0];
+  law.rate_reach = sums[1];
+  // Of an offset's longer series.
+  for (auto k = idx(whole_lanes(static_cast<int>(terms))); k < count; ++k) {
+    law.reach += std::abs(row_[k]);
+    law.rate_reach += static_cast<double>(k) * std::abs(row_[k]);
+  }
+  law.x.assign(row_.begin(), row_.begin() + static_cast<std::ptrdiff_t>(count));
+  return law.x;
 }
 
 double LawSeries::size_of_term(int law, std::size_t k) const {
@@ -165,26 +191,36 @@ double LawSeries::size_of_term(int law, std::size_t k) const {
 
 /// What a bound is at least along the step; nothing is known of one that is scaled.
 double LawSeries::clearance(const Law& law, const LawBound& b) const {
-  if (b.b_v == 0.0) return b.a + b.b_x * law.x[0] - std::abs(b.b_x) * law.reach;
+  if (b.b_v == 0.0) return b.a + b.b_x * law.x_0 - std::abs(b.b_x) * law.reach;
   if (law.scaled) return 0.0;
   const double per_time = b.b_v / h_;
-  return b.a + b.b_x * law.x[0] + per_time * law.x[1] - std::abs(b.b_x) * law.reach -
+  return b.a + b.b_x * law.x_0 + per_time * law.x_1 - std::abs(b.b_x) * law.reach -
          std::abs(per_time) * law.rate_reach;
 }
 
+/// Whether a bound stays above `least` along the step, by what is known of the rows or by the deflection's series.
+bool LawSeries::keeps_clear(const Law& law, const LawBound& b, double least, double& clear) const {
+  if (clear > least) return true;
+  if (law.whole) return false;
+  series_of(law);
+  clear = clearance(law, b);
+  return clear > least;
+}
+
 void LawSeries::bound_series(const Law& law, const LawBound& b, std::vector<double>& g) const {
-  const std::size_t terms = law.x.size();
+  const std::vector<double>& x = series_of(law);
+  const std::size_t terms = x.size();
   g.resize(terms);
-  for (std::size_t k = 0; k < terms; ++k) g[k] = b.b_x * law.x[k];
+  for (std::size_t k = 0; k < terms; ++k) g[k] = b.b_x * x[k];
   g[0] += b.a;
   if (b.b_v == 0.0) return;
   if (law.scaled) multiply_polynomial(law.scale, g);
-  for (std::size_t k = 0; k + 1 < terms; ++k) g[k] += b.b_v * static_cast<double>(k + 1) / h_ * law.x[k + 1];
+  for (std::size_t k = 0; k + 1 < terms; ++k) g[k] += b.b_v * static_cast<double>(k + 1) / h_ * x[k + 1];
 }
 
 void LawSeries::bound_sizes(int number, const LawBound& b, std::vector<double>& size) const {
   const Law& law = laws_[idx(number)];
-  const std::size_t terms = law.x.size();
+  const std::size_t terms = series_of(law).size();
   size.resize(terms);
   for (std::size_t k = 0; k < terms; ++k) size[k] = std::abs(b.b_x) * size_of_term(number, k);
   if (b.b_v == 0.0) return;
@@ -202,7 +238,8 @@ LawSeries::Start LawSeries::start_of(int number, const LawBound& b, int index) {
   Law& law = laws_[idx(number)];
   auto& [g, clear] = law.bounds[idx(index)];
   clear = index != law.root ? clearance(law, b) : 0.0;
-  if (clear > 0.0) return Start::holds;
+  if (index != law.root && keeps_clear(law, b, 0.0, clear)) return Start::holds;
+  clear = 0.0;
   bound_series(law, b, g);
   if (index != law.root && g[0] > 0.0) return Start::holds;
   bound_sizes(number, b, sizes_);
@@ -268,8 +305,8 @@ LawSeries::Beside LawSeries::first_change_beside(const TaylorSeries& series, dou
       }
       const double square = 0.5 * push * mobility * std::abs(b.b_v) / h_,
                    cube = push * mobility * scale * std::abs(b.b_x) / 6.0;
-      if (bound.clearance > square + cube) continue;
       if (bound.clearance > 0.0) {
+        if (keeps_clear(laws_[j], b, square + cube, bound.clearance)) continue;
         bound_series(laws_[j], b, bound.g);
         bound.clearance = 0.0;
       }
@@ -313,7 +350,7 @@ double LawSeries::later(const Change& change, const double* y, const double* rat
 
 double LawSeries::clear_of_change(const Change& change, double s) const {
   const Law& law = laws_[idx(change.law)];
-  const double rate = std::abs(polynomial_slope(law.x, s));
+  const double rate = std::abs(polynomial_slope(series_of(law), s));
   const double away =
       std::min(rate > 0.0 ? kClear * size_of_term(change.law, 0) / rate : kMostClear, kMostClear);
   return s > 0.0 ? std::max(0.0, s - away) : away;
@@ -356,7 +393,7 @@ double LawSeries::dissipated(double s) const {
     const LawPiece& p = current(j);
     if (p.c == 0.0 && p.k == p.elastic_k && p.y_0 == p.elastic_0) continue;
     bound_series(laws_[j], {p.y_0 - p.elastic_0, p.k - p.elastic_k, p.c, 0}, y);
-    sum += work_of(y, laws_[j].x, s);
+    sum += work_of(y, series_of(laws_[j]), s);
   }
   return sum;
 }

@@ -42,7 +42,7 @@ class LawSeries {
   /// The piece that tells a law's force, but for what scales it; null: of a law that is projected.
   const LawPiece* force_piece(int law) const;
   /// Series of a law's deflection along the step.
-  const std::vector<double>& deflection(int law) const { return laws_[idx(law)].x; }
+  const std::vector<double>& deflection(int law) const { return series_of(laws_[idx(law)]); }
 
   /// Adds the pieces to the matrices and the right side over a step of h seconds.
   void add_to(TaylorSeries& series, const LoadSeries& known, double h) const;
@@ -51,9 +51,10 @@ class LawSeries {
 
   /// Series of how the pieces of a law are scaled along the step.
   using ScaleSeries = std::function<void(int law, std::vector<double>& scale)>;
-  /// The deflections' series along the step.
+  /// The deflections along the step: their series where something asks for them. sizes: of the rows of `series`, bounds of what their
+  /// terms from the first on add up to, and stride() behind them of their slopes by s from the second on; null: not known.
   void expand(const TaylorSeries& series, const LoadSeries& known, const LawOffsets& offsets,
-              const ScaleSeries& scale_of);
+              const double* sizes, const ScaleSeries& scale_of);
   /// A law whose piece does not hold from s = 0 on, s = 0.
   std::optional<Change> change_at_once();
   /// No piece that holds loses energy but by its damping, nor does a known motion act on it.
@@ -91,11 +92,15 @@ class LawSeries {
     bool expanded = false;                  // the law is one of ExpandedLaws
     std::vector<std::optional<int>> sides;  // StepMotion::side() of each piece
     int piece = 0;
-    int root = -1;                                   // bound of the piece that is zero at s = 0
-    std::vector<double> x;                           // series of x
+    int root = -1;                  // bound of the piece that is zero at s = 0
+    int number = 0;                 // of the law
+    mutable std::vector<double> x;  // series of x, where whole: series_of()
+    mutable bool whole = false;
+    double x_0 = 0.0, x_1 = 0.0;                     // its first two terms
     std::array<double, 3> known = {}, known_size{};  // of its known part, and sums of what that adds up from
     std::vector<double> scale;                       // series of r, where it is scaled
-    double reach = 0.0, rate_reach = 0.0;            // sums of |x_k|, and of k |x_k| from the second term on
+    mutable double reach = 0.0,
+                   rate_reach = 0.0;  // at least sum |x_k|, and sum k |x_k| from the second term on
     /// A bound of the piece: its series; or, where the bound stays above a clearance > 0, none.
     struct BoundSeries {
       std::vector<double> g;
@@ -104,6 +109,8 @@ class LawSeries {
     std::vector<BoundSeries> bounds;
   };
   const LawPiece& current(std::size_t j) const { return laws_[j].pieces[idx(laws_[j].piece)]; }
+  const std::vector<double>& series_of(const Law& law) const;
+  bool keeps_clear(const Law& law, const LawBound& bound, double least, double& clear) const;
   enum class Start { holds, falls, jumped };
   Start start_of(int law, const LawBound& bound, int index);
   double clearance(const Law& law, const LawBound& bound) const;
@@ -116,7 +123,7 @@ class LawSeries {
   const System& system_;
   std::vector<Law> laws_;
   std::vector<double> sizes_, lower_;
-  LaneVector row_;  // a law's deflection, in whole lanes
+  mutable LaneVector row_;  // a law's deflection, in whole lanes
   double h_ = 0.0;
   const TaylorSeries* series_ = nullptr;  // that were expanded last
   const LawOffsets* offsets_ = nullptr;

@@ -75,6 +75,8 @@ class LoadSeries {
   /// Gives each kink listed the terms of its load's angle, no more than so many, which are three at least: those of the nominal
   /// motion.
   void expand_kinks(const TaylorSeries& series, std::size_t most);
+  /// By row of the series over a whole step that was listed, TaylorSeries::ranges()' bounds.
+  const double* row_sizes() const { return ranges_.data() + stride_; }
   KinkMoments& kinks() { return kinks_; }
   const KinkMoments& kinks() const { return kinks_; }
   /// Puts the loads' slopes at s, behind the kinks listed, in place of those at the step's start; and those back.

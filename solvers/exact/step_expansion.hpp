@@ -65,9 +65,10 @@ class StepExpansion {
   void expand_laws(LawSeries& laws) {
     std::fill(ranges_known_.begin(), ranges_known_.end(), false);
     expanded.expand(series);
-    laws.expand(series, known, offsets, [this](int law, std::vector<double>& scale) {
-      if (!expanded.scale_of(law, series, scale)) smooth.expand_scale(law, series, scale);
-    });
+    laws.expand(series, known, offsets, sweeps_ ? known.row_sizes() : nullptr,
+                [this](int law, std::vector<double>& scale) {
+                  if (!expanded.scale_of(law, series, scale)) smooth.expand_scale(law, series, scale);
+                });
   }
   /// Whether kinks of the step add to the series by their response at each s, in place of a projection.
   bool sweeps() const { return sweeps_; }

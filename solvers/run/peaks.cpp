@@ -74,6 +74,13 @@ double Peaks::value(std::size_t c, const Assembler& assembler, const EvaluatedSt
   return pair >= 0 ? pairs_.sum(pair, point.state.z.data()) : channels_[c].evaluate(assembler, point.state);
 }
 
+/// The same at the end of a step of a StepMotion, whose laws were evaluated there.
+double Peaks::end_value(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const {
+  if (const int law = channels_[c].force_of(); law >= 0) return point.responses[idx(law)].y;
+  if (const int law = channels_[c].deflection_of(); law >= 0) return point.inputs[idx(law)].x;
+  return value(c, assembler, point);
+}
+
 std::optional<double> Peaks::rate(std::size_t c, const Assembler& assembler,
                                   const EvaluatedState& point) const {
   if (const int pair = watched_[c].pair; pair >= 0) return pairs_.sum(pair, point.state.v.data());
@@ -303,7 +310,7 @@ void Peaks::step(const Assembler& assembler, const EvaluatedState& from, const E
     pairs_.last.swap(pairs_.ahead);
     pairs_.last_rate.swap(pairs_.ahead_rate);
     for (const std::size_t c : others_) {
-      const double y = last(c) = value(c, assembler, to);
+      const double y = last(c) = end_value(c, assembler, to);
       // A force may jump at the step's end.
       if (within_peaks(c, y, y, 0.0)) continue;
       peaks_[c].note(y, to.state.t);

@@ -43,6 +43,7 @@ class Peaks final : public Observer {
 
  private:
   double value(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const;
+  double end_value(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const;
   std::optional<double> rate(std::size_t c, const Assembler& assembler, const EvaluatedState& point) const;
   /// y_0, y_1: values at both ends.
   void look_inside(std::size_t c, const Assembler& assembler, const EvaluatedState& from,
