@@ -292,9 +292,10 @@ LawSeries::Beside LawSeries::first_change_beside(const TaylorSeries& series, dou
   Beside found;
   double earliest = 1.0, second = 2.0;
   for (std::size_t j = 0; j < laws_.size(); ++j) {
-    double mobility = 0.0;
-    for (const Entry& e : system_.scalars()[j].z)
-      mobility += std::abs(e.coeff) * std::sqrt(series.mobility(e.index));
+    double& mobility = laws_[j].root_mobility;
+    if (mobility == 0.0)
+      for (const Entry& e : system_.scalars()[j].z)
+        mobility += std::abs(e.coeff) * std::sqrt(series.mobility(e.index));
     for (std::size_t i = 0; i < laws_[j].bounds.size(); ++i) {
       const LawBound& b = current(j).bounds[i];
       auto& bound = laws_[j].bounds[i];

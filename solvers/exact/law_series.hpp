@@ -94,6 +94,7 @@ class LawSeries {
     int piece = 0;
     int root = -1;                  // bound of the piece that is zero at s = 0
     int number = 0;                 // of the law
+    double root_mobility = 0.0;     // sum |b_i| sqrt(mobility) of its row; 0: not found yet
     mutable std::vector<double> x;  // series of x, where whole: series_of()
     mutable bool whole = false;
     double x_0 = 0.0, x_1 = 0.0;                     // its first two terms

@@ -117,7 +117,7 @@ struct MomentsAtNodes {
 int TaylorSeries::terms_within(double part) const {
   Norm tail{};
   for (int k = degree_; k > 2; --k)
-    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
+    for (std::size_t kind = 0; kind < kinds(); ++kind) {
       tail[kind] += sizes_[idx(k)][kind];
       if (tail[kind] > part * z_step_scale_[kind]) return k + 1;
     }
@@ -148,7 +148,7 @@ void TaylorSeries::swept_at_nodes(const std::vector<Entry>& row, double s, NodeV
 int TaylorSeries::loss_terms() const {
   const auto suffices = [this](int terms) {
     const double* weight = sum_weights().end.data() + kMoments + terms;
-    for (std::size_t kind = 0; kind < v_step_scale_.size(); ++kind) {
+    for (std::size_t kind = 0; kind < kinds(); ++kind) {
       double next = 0.0;
       for (int k = terms + 1; k <= degree_; ++k) next += weight[k * kSums] * sizes_[idx(k)][kind];
       const double largest = h_ * v_step_scale_[kind];
@@ -223,7 +223,7 @@ void TaylorSeries::ranges(double* end, double* size) {
   const int terms = std::min(degree_, kRangeTerms);
   Norm tail{}, slope_tail{};
   for (int k = terms + 1; k <= degree_; ++k)
-    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
+    for (std::size_t kind = 0; kind < kinds(); ++kind) {
       tail[kind] += sizes_[idx(k)][kind];
       slope_tail[kind] += k * sizes_[idx(k)][kind];
     }
@@ -239,9 +239,10 @@ void TaylorSeries::beyond_cubic(double s, double* out) {
   const int last = std::min(degree_, kLastBeyond);
   std::array<double, std::size_t{2} * (kLastBeyond - kFirstBeyond + 1)> weight;
   Norm tail{}, rate_tail{};
+  const double per_time = 1.0 / h_;
   double power = s * s * s;  // s^(k-1)
   for (int k = kFirstBeyond; k <= degree_; ++k) {
-    const double of_rate = beyond_weight(k) * (k - 4.0) * power / h_;
+    const double of_rate = beyond_weight(k) * (k - 4.0) * power * per_time;
     power *= s;
     const double of_value = beyond_weight(k) * power;
     if (k <= last) {
@@ -249,7 +250,7 @@ void TaylorSeries::beyond_cubic(double s, double* out) {
       weight[idx(2 * (k - kFirstBeyond) + 1)] = of_rate;
       continue;
     }
-    for (std::size_t kind = 0; kind < tail.size(); ++kind) {
+    for (std::size_t kind = 0; kind < kinds(); ++kind) {
       tail[kind] += of_value * sizes_[idx(k)][kind];
       rate_tail[kind] += of_rate * sizes_[idx(k)][kind];
     }

@@ -412,7 +412,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
   Norm z_scale = z_scale_, v_scale = v_scale_;
   const double k_step = (k_norm_ + k_more_) * h * h, c_step = (c_norm_ + c_more_) * h;
   const auto inverse = [](int k) { return kInverse[idx(k)]; };
-  const std::size_t kinds = kinds_.empty() ? 1 : 2;
+  const std::size_t kinds = this->kinds();
   // Size of a term over what is allowed, and the same of what forces added to it.
   Norm per_z{}, per_v{}, scales_of{};
   const auto excess_of = [&](const Norm& size, int k) {
@@ -464,7 +464,7 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
       if (const Norm& size = sizes_[idx(known)]; !std::isfinite(size[0] + size[1])) return end(k, 0.0);
     }
     const Norm& size = sizes_[idx(k)];
-    growth = std::max(1.0, growth * most_growth * inverse(k));
+    growth = std::max(1.0, growth * (most_growth * inverse(k)));
     for (std::size_t i = 0; i < kinds; ++i) {
       z_scale[i] = std::max(z_scale[i], size[i] / growth);
       v_scale[i] = std::max(v_scale[i], k * per_time * size[i] / growth);

@@ -261,6 +261,7 @@ class TaylorSeries {
   int energy_degree() const;
   int loss_terms() const;
   const double* sums(double s);
+  std::size_t kinds() const { return kinds_.empty() ? 1 : 2; }  // of unknowns there are: entries of a Norm
   void sum_sizes(int first, int count, const double* weight, const Norm& tail, const Norm& other_tail,
                  double* out) const;
   bool add_term_forces(int k, double factor, double* term);
