@@ -28,7 +28,6 @@ SeriesRecursion TaylorSeries::sweep_recursion(int degree) {
   swept_.resize(idx(2 * pad_ + (kMostSwept + 3) * stride_));
   swept_degree_ = degree;
   scale_step();
-  products_ += degree + 1;
   SeriesRecursion r = recursion();
   r.derivatives = true;
   r.p = nullptr;
@@ -44,6 +43,7 @@ void TaylorSeries::sweep(const RowMoments& moments, int degree) {
     for (int i = 0; i < moments.count; ++i) packed_from_[idx(moments.rows[i])] = i;
     r.packed = {moments.values + degree * moments.step, moments.step, packed_from_.data()};
     r.first_kept = degree + 2 - kSweptParts;
+    products_ += degree + 1;
     return series_terms(r, 2, degree + 2, nullptr);
   }
   swept_forces_.resize(idx((kMostSwept + 1) * stride_), 0.0);
@@ -54,6 +54,7 @@ void TaylorSeries::sweep(const RowMoments& moments, int degree) {
 void TaylorSeries::sweep(double* moments, int degree) {
   SeriesRecursion r = sweep_recursion(degree);
   r.p = moments;
+  products_ += degree + 1;
   if (by_kernel()) return series_terms(r, 2, degree + 2, nullptr);
   for (int k = 2; k <= degree + 2; ++k) product_term(r, k);
   std::fill_n(moments, idx((degree + 1) * stride_), 0.0);

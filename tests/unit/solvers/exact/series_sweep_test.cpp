@@ -91,7 +91,9 @@ TEST_CASE("A sweep of forces on few rows is the dense matrix's series, whatever 
                 w.col(j).tail(count) += h * h * moment * inverse.col(rows[static_cast<std::size_t>(i)]);
               }
             }
+            const long before = series.products();
             series.sweep({forces, rows.data(), values.data(), step, own_rows}, degree);
+            CHECK(series.products() - before == degree + 1);
             for (int part = 0; part < TaylorSeries::kSweptParts; ++part) {
               Eigen::VectorXd y = Eigen::VectorXd::Zero(2 * count);
               for (int j = degree; j >= part; --j) y = a * y + w.col(j);
