@@ -43,7 +43,7 @@ class StraightLoads {
   void advance(double t, bool whole);
   void look_up(Load& load, double t, double direction);
   /// What lies ahead of a load, over one bound after the other: first the stretch at hand; then, over a bound that it comes to at
-  /// time t, the one behind it, which it keeps for advance(). Where it starts, and what its slopes are.
+  /// time t, the one behind it, which it keeps for advance(): its bounds and its slopes.
   struct Ahead {
     double low, high, angle_slope, time_slope;
   };

@@ -15,7 +15,7 @@ namespace {
 // leave out is at most 1e-16 of the loss by a mode of rate h = 4.5. As few are taken as set_loss_accuracy() allows.
 constexpr int kLossTerms = 12, kFewestLossTerms = 6;
 // The same of the motion swept, which is a small part of all, and at the nodes of Gauss's rule: at most 1e-11 by one of rate h = 3.
-constexpr int kSweptTerms = 8;
+constexpr int kSweptTerms = TaylorSeries::kSweptParts;
 // Columns of the sums: the rate at the end, and the moments b_k = int z' L_k ds.
 constexpr int kRateSum = 0, kMoments = 1, kSums = kMoments + kLossTerms;
 // Bounds by rows are summed from these terms; those behind them are bounded by the largest of any row.
