@@ -11,18 +11,39 @@ namespace {
 constexpr double kSmallestRadius = 1e-13;  // relative to the end
 constexpr int kNewtonLimit = 100;
 
-/// The root of a polynomial that is monotone on [low, high], g(low) >= 0 > g(high).
-double bracketed_root(std::span<const double> g, double low, double high) {
-  double s = 0.5 * (low + high);
+struct Point {
+  double value, slope;
+};
+/// Value and slope, even and odd powers apart, as polynomial_value().
+Point polynomial_at(std::span<const double> g, double s) {
+  const double square = s * s;
+  std::size_t k = g.size();
+  double odd = 0.0, even = k % 2 == 1 ? g[--k] : 0.0, odd_rate = 0.0, even_rate = 0.0;  // by the square
+  for (; k > 0; k -= 2) {
+    odd_rate = odd_rate * square + odd;
+    even_rate = even_rate * square + even;
+    odd = odd * square + g[k - 1];
+    even = even * square + g[k - 2];
+  }
+  return {even + s * odd, odd + 2.0 * (s * even_rate + square * odd_rate)};
+}
+
+/// The root of a polynomial that is monotone on [low, high], at whose ends it is g_low >= 0 > g_high; curvature: bound of |g''|.
+double bracketed_root(std::span<const double> g, double low, double high, double g_low, double g_high,
+                      double curvature) {
+  constexpr double kRounding = std::numeric_limits<double>::epsilon();
+  double s = low + (high - low) * (g_low / (g_low - g_high));
   for (int i = 0; i < kNewtonLimit; ++i) {
-    const double value = polynomial_value(g, s), slope = polynomial_slope(g, s);
-    (value >= 0.0 ? low : high) = s;
-    double next = s - value / slope;
+    const Point at = polynomial_at(g, s);
+    (at.value >= 0.0 ? low : high) = s;
+    const double step = at.value / at.slope;
+    double next = s - step;
     if (!(next > low && next < high)) {
       // Newton leaves the bracket: the root lies within rounding of s, or the bracket is halved.
-      const double near = std::abs(value / slope);
-      if (near <= 2.0 * std::numeric_limits<double>::epsilon() * s) return s;
+      if (std::abs(step) <= 2.0 * kRounding * s) return s;
       next = 0.5 * (low + high);
+    } else if (0.5 * curvature * step * step <= kRounding * s * std::abs(at.slope)) {
+      return next;
     }
     if (next == s || next <= low || next >= high) return s;
     s = next;
@@ -40,17 +61,18 @@ class Search {
 
   std::optional<double> first(double low, double high) const {
     const double c = 0.5 * (low + high), r = 0.5 * (high - low);
-    const double value = polynomial_value(g_, c), slope = polynomial_slope(g_, c);
+    const auto [value, slope] = polynomial_at(g_, c);
     const double bend = curvature_ * r;
     if (std::abs(value) > std::abs(slope) * r + 0.5 * bend * r) {
       if (value < 0.0) return low;  // it fell below at the very start
       return std::nullopt;
     }
     if (std::abs(slope) > bend) {
-      if (slope > 0.0)
-        return polynomial_value(g_, low) < 0.0 && low > 0.0 ? std::optional(low) : std::nullopt;
-      if (polynomial_value(g_, high) >= 0.0) return std::nullopt;
-      return polynomial_value(g_, low) < 0.0 ? low : bracketed_root(g_, low, high);
+      const double at_low = low == 0.0 ? g_[0] : polynomial_value(g_, low);
+      if (slope > 0.0) return at_low < 0.0 && low > 0.0 ? std::optional(low) : std::nullopt;
+      const double at_high = polynomial_value(g_, high);
+      if (at_high >= 0.0) return std::nullopt;
+      return at_low < 0.0 ? low : bracketed_root(g_, low, high, at_low, at_high, curvature_);
     }
     if (r <= smallest_) return polynomial_value(g_, high) < 0.0 ? std::optional(c) : std::nullopt;
     if (const auto left = first(low, c)) return left;

@@ -26,15 +26,10 @@ constexpr double kOnLawKnot = 1e-12;
 
 std::size_t capacity() { return static_cast<std::size_t>(TaylorSeries::kMaxDegree) + 1; }
 
-/// Term m of the product of two series.
-double product_term(const std::vector<double>& a, const std::vector<double>& b, int m) {
-  constexpr int kSums = 4;  // that do not wait for each other
-  std::array<double, kSums> sum{};
-  int i = 0;
-  for (; i + kSums <= m + 1; i += kSums)
-    for (int j = 0; j < kSums; ++j) sum[idx(j)] += a[idx(i + j)] * b[idx(m - i - j)];
-  for (; i <= m; ++i) sum[0] += a[idx(i)] * b[idx(m - i)];
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+/// Term m of the product of two series, the second one with its first term last.
+double product_term(const std::vector<double>& a, const std::vector<double>& backward, int m) {
+  return Eigen::Map<const Vector>(a.data(), m + 1)
+      .dot(Eigen::Map<const Vector>(backward.data() + (capacity() - idx(m + 1)), m + 1));
 }
 
 /// Term m of cos and sin of orders of an angle whose s theta' has terms `turn`; returns what they add to a sum of orders.
@@ -116,13 +111,15 @@ ExpandedLaws::ExpandedLaws(const System& system) : system_(system), assembler_(s
     if (term.phase_node >= 0) {
       law.scaled = dynamic_cast<const AngleScaledForce*>(term.force);
       law.phase_row = system.row_of(term.phase_node);
+      law.stretch.low = std::numeric_limits<double>::infinity();  // none is known yet
     }
     Vector row = Vector::Zero(system.size()), gain;
     for (const Entry& e : term.z) row[e.index] += e.coeff;
     series.solve_mass(row, gain);
     for (int i = 0; i < system.size(); ++i)
       if (gain[i] != 0.0) law.gain.push_back({i, gain[i]});
-    for (auto* s : {&law.x, &law.theta, &law.r, &law.turn, &law.by_phase_terms}) s->assign(capacity(), 0.0);
+    for (auto* s : {&law.x, &law.x_backward, &law.theta, &law.r, &law.turn, &law.by_phase_terms})
+      s->assign(capacity(), 0.0);
     laws_.push_back(std::move(law));
   }
 }
@@ -166,7 +163,6 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
     law.known[0] -= law.origin;
     law.angle = in.angle;
     law.deflection = in.x - law.origin;
-    law.stretch = {};
     if (law.scaled != nullptr) {
       law.known_angle.assign(3, 0.0);
       const auto add_known = [&](double factor, const MotionPoint& m) {
@@ -179,7 +175,11 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
       double rate = law.known_angle[1] / h;
       for (const Entry& e : law.phase_row) rate += e.coeff * start.state.v[e.index];
       if (rate != 0.0 && law.turned_at != t_) law.direction = rate > 0.0 ? 1.0 : -1.0;
-      law.stretch = law.scaled->scale_stretch(law.angle, law.direction);
+      const double near = kOnLawKnot * std::max(1.0, std::abs(law.angle));
+      if (!(law.angle > law.stretch.low + near && law.angle < law.stretch.high - near)) {
+        law.stretch = law.scaled->scale_stretch(law.angle, law.direction);
+        law.stretch_angle = law.angle;
+      }
     }
     law.varies = law.stretch.slope != 0.0 || !law.stretch.orders.empty();
     if (law.works) start_scale(law);
@@ -214,11 +214,11 @@ void ExpandedLaws::add_spring(TaylorSeries& series, Law& law) {
   law.active = law.works = false;
 }
 
-void ExpandedLaws::start_scale(Law& law) const {
+void ExpandedLaws::start_scale(Law& law) {
   const std::span<const ScaleOrder> orders = law.stretch.orders;
   law.scale_to = 0;
   law.slopes_to = -1;
-  law.r[0] = law.stretch.value;
+  law.r[0] = law.stretch.value + law.stretch.slope * (law.angle - law.stretch_angle);
   const auto lanes = idx(whole_lanes(static_cast<int>(orders.size())));
   law.orders.assign(3 * lanes, 0.0);
   for (auto* terms : {&law.cosine, &law.sine}) {
@@ -259,32 +259,30 @@ void ExpandedLaws::add_scale_slopes(Law& law) {
   if (from == 0) law.by_phase_terms[0] += law.stretch.slope;
 }
 
-/// x_m and theta_m.
-void ExpandedLaws::add_term(Law& law, const TaylorSeries& series, int m) const {
+/// x_m and theta_m; z: term m of the motion.
+void ExpandedLaws::add_term(Law& law, const double* z, int m) {
   if (law.works) {
-    double x = term_or_zero(law.known, m);
-    for (const Entry& e : law.term->z) x += e.coeff * series.coefficient(m, e.index);
+    const double x = term_or_zero(law.known, m) + value_along(law.term->z, z);
     law.x[idx(m)] = x;
+    law.x_backward[capacity() - idx(m + 1)] = x;
   }
   if (law.scaled == nullptr) return;
-  double theta = m == 0 ? law.angle : term_or_zero(law.known_angle, m);
-  if (m > 0)
-    for (const Entry& e : law.phase_row) theta += e.coeff * series.coefficient(m, e.index);
-  law.theta[idx(m)] = theta;
+  law.theta[idx(m)] = m == 0 ? law.angle : term_or_zero(law.known_angle, m) + value_along(law.phase_row, z);
 }
 
 double ExpandedLaws::add(const TaylorSeries& series, int k, double factor, double* term) {
   const int m = k - 2;
+  const double* z = series.coefficients(m + 1);
   for (Law& law : laws_) {
     if (!law.active) continue;
-    if (m == 0) add_term(law, series, 0);
-    add_term(law, series, m + 1);
+    if (m == 0) add_term(law, series.coefficients(0), 0);
+    add_term(law, z, m + 1);
     law.terms_to = m + 1;
-    double y = law.k * (law.varies ? product_term(law.r, law.x, m) : law.r[0] * law.x[idx(m)]);
+    double y = law.k * (law.varies ? product_term(law.r, law.x_backward, m) : law.r[0] * law.x[idx(m)]);
     y += law.y_0 * (m == 0 || law.varies ? law.r[idx(m)] : 0.0);
     double rate = law.c * (m + 1) * law.x[idx(m + 1)];
     // x x' is half the rate of x^2.
-    if (law.g != 0.0) rate += 0.5 * law.g * (m + 1) * product_term(law.x, law.x, m + 1);
+    if (law.g != 0.0) rate += 0.5 * law.g * (m + 1) * product_term(law.x, law.x_backward, m + 1);
     y += rate / h_;
     for (const Entry& e : law.gain) term[e.index] -= e.coeff * y * factor;
     // Ahead of the next term, while the processor waits for this one.
@@ -294,11 +292,12 @@ double ExpandedLaws::add(const TaylorSeries& series, int k, double factor, doubl
 }
 
 /// x and theta up to the series' degree, behind what add() has found; and r.
-void ExpandedLaws::complete_terms(Law& law, const TaylorSeries& series) const {
-  for (; law.terms_to < series.degree(); ++law.terms_to) add_term(law, series, law.terms_to + 1);
+void ExpandedLaws::complete_terms(Law& law, const TaylorSeries& series) {
+  for (; law.terms_to < series.degree(); ++law.terms_to)
+    add_term(law, series.coefficients(law.terms_to + 1), law.terms_to + 1);
 }
 
-void ExpandedLaws::complete(Law& law, const TaylorSeries& series) const {
+void ExpandedLaws::complete(Law& law, const TaylorSeries& series) {
   complete_terms(law, series);
   if (law.scale_to < 0) start_scale(law);
   if (!law.varies) return;
@@ -323,10 +322,9 @@ bool ExpandedLaws::turns_back(const TaylorSeries& series) {
     const double to_knot = law.direction > 0.0 ? law.angle - law.stretch.low : law.stretch.high - law.angle;
     if (!(to_knot < near)) continue;
     double largest = 0.0, lead = 0.0;
-    for (int m = 1; m <= series.degree(); ++m) {
-      add_term(law, series, m);
-      largest = std::max(largest, std::abs(law.theta[idx(m)]));
-    }
+    if (!law.active) law.terms_to = -1;  // add() has not found those of this pass
+    complete_terms(law, series);
+    for (int m = 1; m <= series.degree(); ++m) largest = std::max(largest, std::abs(law.theta[idx(m)]));
     for (int m = 1; m <= series.degree() && lead == 0.0; ++m)
       if (std::abs(law.theta[idx(m)]) > kOnLawKnot * largest) lead = law.theta[idx(m)];
     if (!(lead * law.direction < 0.0)) continue;
@@ -366,13 +364,21 @@ std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, doubl
     if (law.scaled == nullptr) continue;
     if (!std::isfinite(law.stretch.low) && !std::isfinite(law.stretch.high)) continue;
     const double near = kOnLawKnot * std::max(1.0, std::abs(law.angle));
-    double reach = near;  // how far the angle comes at most, on either side
-    for (int m = 1; m <= series.degree(); ++m) reach += std::abs(law.theta[idx(m)]);
+    const auto terms = idx(series.degree() + 1);
+    double reach = near, others = 0.0;  // how far the angle comes at most, on either side; what bends its way
+    for (std::size_t m = 1; m < terms; ++m) {
+      reach += std::abs(law.theta[m]);
+      others += static_cast<double>(m) * std::abs(law.theta[m]);
+    }
+    const double first_rate = std::abs(law.theta[1]);
     for (const double side : {1.0, -1.0}) {
       const double bound = side > 0.0 ? law.stretch.high : law.stretch.low;
       if (side * (bound - law.angle) > reach) continue;
-      std::vector<double> g(law.theta.begin(), law.theta.begin() + series.degree() + 1);
-      for (double& term : g) term *= -side;
+      // It moves away from this bound all along the step.
+      if (side * law.theta[1] < 0.0 && 2.0 * first_rate > others) continue;
+      std::vector<double>& g = to_knot_;
+      g.resize(terms);
+      for (std::size_t m = 1; m < terms; ++m) g[m] = -side * law.theta[m];
       g[0] = std::max(0.0, side * (bound - law.angle));
       if (g[0] == 0.0 && law.direction * side > 0.0)
         continue;  // no stretch is that short: on the knot, past it

@@ -112,9 +112,11 @@ class ExpandedLaws final : public TermForces {
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
     double angle = 0.0, deflection = 0.0, stored = 0.0;  // at the step's start, the deflection from `origin`
     bool is_spring = false;                              // over the whole step: it is in the series' matrices
-    ScaleStretch stretch;
+    ScaleStretch stretch;                                // about stretch_angle
+    double stretch_angle = 0.0;
     std::vector<double> known, known_angle;  // series of what is known of x and theta
     std::vector<double> x, theta, r;
+    std::vector<double> x_backward;            // x with its first term last
     std::vector<double> turn, by_phase_terms;  // series of s theta' and dr/dtheta
     // Slopes of use_slopes(), with their derivatives by s.
     std::array<double, kChanges + 1> slope{}, by_speed{}, by_phase{};
@@ -126,8 +128,8 @@ class ExpandedLaws final : public TermForces {
   void note_changes(const Law& law, const double* x, const double* r, const double* p);
   static void add_slopes(TaylorSeries& series, const Law& law, double factor);
   static void add_spring(TaylorSeries& series, Law& law);
-  void start_scale(Law& law) const;
-  void add_term(Law& law, const TaylorSeries& series, int m) const;
+  static void start_scale(Law& law);
+  static void add_term(Law& law, const double* z, int m);
   static int lanes_of(const Law& law) { return static_cast<int>(law.orders.size() / 3); }
   static void add_scale(Law& law, int m);
   /// How many of the first terms of dr/dtheta are not zero: without orders it is the same all along the step.
@@ -136,8 +138,8 @@ class ExpandedLaws final : public TermForces {
     return terms;
   }
   static void add_scale_slopes(Law& law);
-  void complete_terms(Law& law, const TaylorSeries& series) const;
-  void complete(Law& law, const TaylorSeries& series) const;
+  static void complete_terms(Law& law, const TaylorSeries& series);
+  static void complete(Law& law, const TaylorSeries& series);
 
   const System& system_;
   Assembler assembler_;
@@ -145,6 +147,7 @@ class ExpandedLaws final : public TermForces {
   std::vector<SlopeChange> changes_;
   bool active_ = false, sweeps_ = false;
   const Law* knot_law_ = nullptr;  // law of the knot that was found last
+  std::vector<double> to_knot_;    // series of the distance to a knot
   int known_degree_ = 0;
   double t_ = 0.0, h_ = 0.0, knot_ = 0.0, knot_clearance_ = 0.0;
 };
