@@ -2,8 +2,8 @@
 /// StepLength: how long the next step is to be.
 ///
 /// Passes over projected forces want omega h <= 3 (legendre_projection.hpp). The series itself bears more, and so do kinks that are
-/// swept as long as they move little: up to omega h = 4 a step costs less than its length gains. Such a step is tried; where it is
-/// given up, the next kPause steps are no longer than passes bear, twice as many each time that fewer than kEnough went well since:
+/// swept as long as they move little: up to omega h = 4 a step costs less than its length gains, with the short series of a loose
+/// tolerance up to 5. Such a step is tried; where it is given up, the next kPause steps are no longer than passes bear, twice as many each time that fewer than kEnough went well since:
 /// a step given up costs what some ten longer ones gain.
 #include <algorithm>
 #include <cmath>
@@ -15,15 +15,16 @@ namespace drev {
 class StepLength {
  public:
   static constexpr double kProjectedAngle = 3.0;  ///< omega h of a step with projected forces, at most [rad]
-  static constexpr double kLongestAngle = 4.0;    ///< omega h of any step, at most [rad]
+  /// omega h of any step, at most [rad].
+  static constexpr double longest_angle(double tolerance) { return tolerance < 1e-5 ? 4.0 : 5.0; }
 
   /// fastest: the rate of the fastest mode [rad/s], or a bound of it; 0: none. duration: of the run [s].
-  void start(double fastest, double duration) {
+  void start(double fastest, double duration, double tolerance) {
     const auto step = [&](double angle) {
       return fastest > 0.0 ? std::min(duration, angle / fastest) : duration;
     };
     longest_projected_ = step(kProjectedAngle);
-    longest_ = growing_ = step(kLongestAngle);
+    longest_ = growing_ = step(longest_angle(tolerance));
   }
   /// Of a step with projected forces, and of any, at most [s].
   double longest_projected() const { return longest_projected_; }

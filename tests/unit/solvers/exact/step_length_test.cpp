@@ -10,7 +10,7 @@ TEST_CASE(
     "one ends there") {
   StepLength step;
   const double end = 5.0, longest = 8.1e-5;
-  step.start(StepLength::kLongestAngle / longest, end);
+  step.start(StepLength::longest_angle(1e-6) / longest, end, 1e-6);
   double t = 0.0, first = 0.0;
   long count = 0, changes = 0;
   while (t < end) {
@@ -52,9 +52,13 @@ int steps_held_back(StepLength& step, double end) {
 TEST_CASE("A longer step that is given up is tried again, the later the sooner it is given up again") {
   StepLength step;
   const double end = 1e6;
-  step.start(2.0, end);
+  step.start(2.0, end, 1e-6);
   CHECK(step.longest_projected() == 1.5);
   CHECK(step.longest() == 2.0);
+  StepLength loose;
+  loose.start(2.0, end, 1e-3);
+  CHECK(loose.longest_projected() == 1.5);
+  CHECK(loose.longest() == 2.5);
   CHECK(step.next(0.0, end) == Approx(2.0).epsilon(1e-5));
   CHECK(step.hold_back(1.4) == 1.4);  // not a longer one
   CHECK(step.next(0.0, end) > step.longest_projected());
@@ -79,16 +83,16 @@ TEST_CASE("A longer step that is given up is tried again, the later the sooner i
 
 TEST_CASE("A step that was shortened grows by half a step at a time; terms that overflow leave a sixteenth") {
   StepLength step;
-  step.start(1.0, 1e6);
+  step.start(1.0, 1e6, 1e-6);
   CHECK(step.attempted(4.0, 1.0) == 1.0);
   CHECK(step.attempted(1.0, 1.0) == 1.5);
   CHECK(step.attempted(1.5, 1.5) == 2.25);
   CHECK(step.attempted(3.375, 3.375) == 4.0);
   CHECK(step.attempted(4.0, 0.0) == 0.25);
   // Without a mode, or in a run shorter than its step, the run is one step.
-  step.start(0.0, 7.0);
+  step.start(0.0, 7.0, 1e-6);
   CHECK(step.next(0.0, 7.0) == 7.0);
   CHECK(step.longest_projected() == 7.0);
-  step.start(0.1, 7.0);
+  step.start(0.1, 7.0, 1e-6);
   CHECK(step.next(0.0, 7.0) == 7.0);
 }
