@@ -25,6 +25,8 @@ constexpr double kJump = 1e-4;  // error allowed per undeclared discontinuity, r
 // How far behind a knot a step ends, relative to the step to it: behind the last node of Gauss's rule.
 constexpr double kBehindKnot = 1e-3;
 constexpr double kBeforeEnd = 0.98;  // last place in a step at which the nodes of Gauss's rule see a knot
+constexpr double kSteepest =
+    1.125;  // longest step of a motion that loads and smooth laws make faster, over that of the run
 constexpr double kNearStart = 1e-8;  // a knot so close to the start does not end a step, relative to the step
 constexpr int kMostNewton = 10;
 constexpr double kAlong = 1e-9;  // error of points on the way of a swept step, relative to the motion
@@ -39,7 +41,7 @@ constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
 
 /// The range of a polynomial in [0, end], a step of a series; its turn as a part of that.
 StepMotion::Range range_of(const std::vector<double>& x, double end) {
-  constexpr int kParts = 2 * kLanes;  // omega h <= 0.25 between two places
+  constexpr int kParts = 2 * kLanes;  // omega h <= 0.32 between two places
   std::array<double, kParts> s, value, slope;
   for (int i = 0; i < kParts; ++i) s[idx(i)] = end * (i + 1) / kParts;
   polynomial_values(kParts, static_cast<int>(x.size()), x.data(), s.data(), value.data(), slope.data());
@@ -84,11 +86,12 @@ bool StepExpansion::attempt_sweep(const EvaluatedState& from, const LawSeries& l
 }
 
 bool StepExpansion::evaluate(double s, Vector& z, Vector& v, bool exactly) {
-  bool found = sweeps_ && kinks.found() && kinks.end() == s;
-  series.evaluate(s, z, v);
-  if (sweeps_ && !found) found = kinks.find(s, z.data(), exactly ? share_ : std::max(share_, kAlong));
+  const bool at_hand = sweeps_ && kinks.found() && kinks.end() == s;
+  series.evaluate(s, z, v, at_hand && kinks.any());
+  if (!sweeps_ || at_hand) return true;
+  const bool found = kinks.find(s, z.data(), exactly ? share_ : std::max(share_, kAlong));
   if (found && kinks.any()) series.add_swept(z, v);
-  return found || !sweeps_;
+  return found;
 }
 
 StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const LawSeries& laws, double h,
@@ -105,7 +108,7 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     return {h * std::max(0.3, kShorten * std::pow(share / rest, 1.0 / GaussRule::kNodes))};
   if (known.part_held() < 1.0) return {h * known.part_held(), true};
   // Loads and smooth laws can be stiffer than what bounded the largest step.
-  const double steepest = 1.5 * StepLength::kProjectedAngle / series.rate();
+  const double steepest = kSteepest * StepLength::longest_angle(limits.tolerance) / series.rate();
   if (h > steepest) return {steepest};
   if (Attempt made; attempt_sweep(from, laws, h, limits, made)) return made;
   bool settled = false;
@@ -271,7 +274,7 @@ std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeri
   if (!found.change) knot = first_knot(1.0);
   // The first sweep goes to where the step is likely to end, and tells whether it holds so far.
   const double likely = found.change ? found.change->s : knot.value_or(1.0);
-  if (likely == 1.0 ? !kinks.find(1.0, nullptr, share_) : !evaluate(likely, at.z, at.v)) return std::nullopt;
+  if (!find_kinks(likely, at)) return std::nullopt;
   const bool holds = !(kinks.limit() < likely);
   if (!holds) {
     end.s = kinks.limit();
@@ -291,7 +294,7 @@ std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeri
   }
   if (found.change) knot = first_knot(end.s);
   if (!knot && kinks.any() && !expanded.empty()) {
-    if (!evaluate(end.s, at.z, at.v)) return std::nullopt;
+    if (!find_kinks(end.s, at)) return std::nullopt;
     if (kinks.any() && expanded.passes_knot(series, end.s)) knot = end.s;
   }
   if (!knot) return end;
@@ -301,12 +304,21 @@ std::optional<StepExpansion::SweptEnd> StepExpansion::first_swept_change(LawSeri
   return *s < end.s ? SweptEnd{*s, {}, true} : end;
 }
 
+/// What kinks add to the motion up to s, where the step is likely to end. False: not to be found.
+bool StepExpansion::find_kinks(double s, State& at) {
+  if (kinks.found() && kinks.end() == s) return true;
+  if (s == 1.0) return kinks.find(1.0, nullptr, share_);
+  series.sum_up(s);
+  series.evaluate(s, at.z, at.v);
+  return kinks.find(s, at.z.data(), share_);
+}
+
 /// The s near one on the series' path at which something comes with what kinks add to the motion; later(s): by how much of the
 /// step it is later. None: passes have to tell.
 template <class Later>
 std::optional<double> StepExpansion::settle(double s, const Later& later, double t, State& at) {
   for (int newton = 0; newton < kMostNewton; ++newton) {
-    if (!evaluate(s, at.z, at.v)) return std::nullopt;
+    if (!find_kinks(s, at)) return std::nullopt;
     if (!kinks.any()) return s;
     const double by = later(s);
     if (std::abs(by) <= kAtChange || s * series.step() < kRoundingOfTime * std::abs(t)) return s;

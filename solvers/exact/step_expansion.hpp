@@ -131,6 +131,7 @@ class StepExpansion {
   };
   Inside left_by_kinks(std::span<const Entry> row) const;
   std::optional<StepMotion::Range> find_force_range(const LawSeries& laws, int law, double s);
+  bool find_kinks(double s, State& at);
   template <class Later>
   std::optional<double> settle(double s, const Later& later, double t, State& at);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 
 #include "solvers/linear/lane_pair.hpp"
@@ -242,6 +243,75 @@ struct Sums {
   }
 };
 
+/// The plain sum beside the weighted one: additions and products go through different parts of the processor, and both want the same
+/// loads.
+struct EndSums {
+  template <class L, int kBlocks>
+  [[gnu::always_inline]] static void some(int stride, int degree, const double* z, double* rate_sum,
+                                          double* sum) {
+    L total[kBlocks], rate[kBlocks], x;
+#pragma GCC unroll 6
+    for (int b = 0; b < kBlocks; ++b) {
+      load(z + b * kLanes, total[b]);
+      rate[b] = total[b];
+    }
+    for (int k = 2; k <= degree; ++k) {
+      z += stride;
+      const double weight = k;
+#pragma GCC unroll 6
+      for (int b = 0; b < kBlocks; ++b) {
+        load(z + b * kLanes, x);
+        total[b] += x;
+        rate[b] += weight * x;
+      }
+    }
+#pragma GCC unroll 6
+    for (int b = 0; b < kBlocks; ++b) {
+      store(total[b], sum + b * kLanes);
+      store(rate[b], rate_sum + b * kLanes);
+    }
+  }
+  template <class L>
+  [[gnu::always_inline]] static void run(int stride, int degree, const double* z, double* rate_sum,
+                                         double* sum) {
+    constexpr int kTogether = std::is_same_v<L, LanePair> ? 2 : 5;  // whose sums stay in registers
+    int i = 0;
+    for (; i + kTogether * kLanes <= stride; i += kTogether * kLanes)
+      some<L, kTogether>(stride, degree, z + i, rate_sum + i, sum + i);
+    for (; i < stride; i += kLanes) some<L, 1>(stride, degree, z + i, rate_sum + i, sum + i);
+  }
+};
+
+/// z = z_0 + sum + y, v = per_time (rate + y_rate); the last lanes may be taken twice. kSwept: there is y.
+template <bool kSwept>
+struct EndMotion {
+  template <class L>
+  [[gnu::always_inline]] static void run(int n, const double* z_0, const double* sum, const double* rate,
+                                         double per_time, const double* y, const double* y_rate, double* z,
+                                         double* v) {
+    const auto block = [&](int i) __attribute__((always_inline)) {
+      L a, b;
+      load(z_0 + i, a);
+      load(sum + i, b);
+      a += b;
+      if constexpr (kSwept) {
+        load(y + i, b);
+        a += b;
+      }
+      store(a, z + i);
+      load(rate + i, a);
+      if constexpr (kSwept) {
+        load(y_rate + i, b);
+        a += b;
+      }
+      store(per_time * a, v + i);
+    };
+    int i = 0;
+    for (; i + kLanes < n; i += kLanes) block(i);
+    block(n - kLanes);
+  }
+};
+
 struct MomentWork {
   template <class L>
   [[gnu::always_inline]] static double run(int stride, const double* p, const double* b, double s) {
@@ -379,6 +449,21 @@ void find_derivatives(int terms, const double* c, double x, PolynomialDerivative
 void weighted_sums(int stride, int terms, int sizes, int count, const double* weight, int per_column,
                    const int* begin, const double* f, double* out, bool add, const double* tails) {
   run_widest<Sums>(stride, terms, sizes, count, weight, per_column, begin, f, out, add, tails);
+}
+
+void sum_terms(int stride, int degree, const double* z_1, double* rate_sum, double* sum) {
+  run_widest<EndSums>(stride, degree, z_1, rate_sum, sum);
+}
+
+void end_motion(int n, const double* z_0, const double* sum, const double* rate, double per_time,
+                const double* y, const double* y_rate, double* z, double* v) {
+  if (n >= kLanes && y != nullptr)
+    return run_widest<EndMotion<true>>(n, z_0, sum, rate, per_time, y, y_rate, z, v);
+  if (n >= kLanes) return run_widest<EndMotion<false>>(n, z_0, sum, rate, per_time, y, y_rate, z, v);
+  for (int i = 0; i < n; ++i) {
+    z[i] = z_0[i] + sum[i] + (y != nullptr ? y[i] : 0.0);
+    v[i] = per_time * (rate[i] + (y != nullptr ? y_rate[i] : 0.0));
+  }
 }
 
 double work_of_moments(int stride, const double* p, const double* b, double s) {

@@ -111,6 +111,13 @@ void weighted_sums(int stride, int terms, int sizes, int count, const double* we
                    const int* begin, const double* f, double* out, bool add = false,
                    const double* tails = nullptr);
 
+/// sum = sum Z_k and rate_sum = sum k Z_k, k = 1 ... degree, with the first of them at z_1.
+void sum_terms(int stride, int degree, const double* z_1, double* rate_sum, double* sum);
+
+/// z = z_0 + sum + y, v = per_time (rate + y_rate) of n unknowns; y null: without these.
+void end_motion(int n, const double* z_0, const double* sum, const double* rate, double per_time,
+                const double* y, const double* y_rate, double* z, double* v);
+
 /// sum_i p_0i b_0i + p_1i s/2 (b_0i + b_1i) + p_2i s^2/6 (2 b_0i + 3 b_1i + b_2i) = int_0^s (p_0 + p_1 u + p_2 u^2) z' du with
 /// the moments b_k = int_0^s L_k z' du of Legendre polynomials over [0, s].
 double work_of_moments(int stride, const double* p, const double* b, double s);

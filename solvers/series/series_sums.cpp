@@ -16,8 +16,9 @@ namespace {
 constexpr int kLossTerms = 12, kFewestLossTerms = 6;
 // The same of the motion swept, which is a small part of all, and at the nodes of Gauss's rule: at most 1e-11 by one of rate h = 3.
 constexpr int kSweptTerms = TaylorSeries::kSweptParts;
-// Columns of the sums: the rate at the end, and the moments b_k = int z' L_k ds.
-constexpr int kRateSum = 0, kMoments = 1, kSums = kMoments + kLossTerms;
+// Columns of the sums: the rate at the end, and the moments b_k = int z' L_k ds. Works of loads want the first three moments;
+// the first columns are known from ranges() on.
+constexpr int kRateSum = 0, kMoments = 1, kSums = kMoments + kLossTerms, kWorkMoments = 3, kEndSums = 2;
 // Bounds by rows are summed from these terms; those behind them are bounded by the largest of any row.
 constexpr int kRangeTerms = 8, kFirstBeyond = 4, kLastBeyond = 16;
 
@@ -114,6 +115,31 @@ struct MomentsAtNodes {
 
 }  // namespace
 
+/// Raises the scales of the motion where terms from ... to - 1 say so: of a mode of rate w, term k is no more than (w h)^k/k! times as
+/// large as the motion. most: of w h.
+void TaylorSeries::note_terms(int from, int to, double most, Norm& z_scale, Norm& v_scale) const {
+  const double per_time = 1.0 / h_;
+  const auto growth = [most](int k) {
+    double of_term = most;
+    for (int j = 2; j <= k; ++j) of_term = std::max(1.0, of_term * (most * kInverse[idx(j)]));
+    return of_term;
+  };
+  for (std::size_t kind = 0; kind < kinds(); ++kind) {
+    double largest = 0.0, largest_rate = 0.0;
+    for (int k = from; k < to; ++k) {
+      largest = std::max(largest, sizes_[idx(k)][kind]);
+      largest_rate = std::max(largest_rate, k * sizes_[idx(k)][kind]);
+    }
+    // As nearly always, since no growth is less than 1.
+    if (largest <= z_scale[kind] && per_time * largest_rate <= v_scale[kind]) continue;
+    for (int k = from; k < to; ++k) {
+      const double size = sizes_[idx(k)][kind] / growth(k);
+      z_scale[kind] = std::max(z_scale[kind], size);
+      v_scale[kind] = std::max(v_scale[kind], k * per_time * size);
+    }
+  }
+}
+
 int TaylorSeries::terms_within(double part) const {
   Norm tail{};
   for (int k = degree_; k > 2; --k)
@@ -156,6 +182,7 @@ int TaylorSeries::loss_terms() const {
     }
     return true;
   };
+  if (undamped_ && !added_damping()) return kWorkMoments;
   int terms = kFewestLossTerms;
   while (terms < kLossTerms && !suffices(terms)) terms += 2;
   return terms;
@@ -166,36 +193,53 @@ const double* TaylorSeries::sums(double s) {
   const auto& at_end = sum_weights().end;
   const double* weight = at_end.data();
   loss_terms_ = loss_terms();
-  const int columns = kMoments + loss_terms_;
+  const int columns = kMoments + loss_terms_, first = s == 1.0 ? kEndSums : 0;
   if (s != 1.0) {
     part_weights_.resize(at_end.size());
     double power = s, below = 1.0;  // s^k, s^(k-1)
     for (int k = 1; k <= degree_; ++k, below = power, power *= s) {
       double* w = part_weights_.data() + k * kSums;
-      for (int j = 0; j < columns; ++j) w[j] = at_end[idx(k * kSums + j)] * (j == kRateSum ? below : power);
+      const double* whole = at_end.data() + k * kSums;
+      for (int j = 0; j < columns; ++j) w[j] = whole[j] * power;
+      w[kRateSum] = whole[kRateSum] * below;
     }
     weight = part_weights_.data();
   }
-  step_sums_.resize(idx(kSums * stride_));
-  weighted_sums(stride_, columns, 0, degree_, weight + kSums, kSums, sum_weights().end_begin.data(),
-                coefficients(1), step_sums_.data());
+  if (s == 1.0)
+    find_ends();
+  else
+    step_sums_.resize(idx(kSums * stride_));
+  weighted_sums(stride_, columns - first, 0, degree_, weight + kSums + first, kSums,
+                sum_weights().end_begin.data() + first, coefficients(1),
+                step_sums_.data() + idx(first * stride_));
   sums_at_ = s;
+  ends_known_ = s == 1.0;
   return step_sums_.data();
 }
 
-void TaylorSeries::evaluate(double s, Vector& z, Vector& v) const {
+/// The first columns of the sums at s = 1.
+void TaylorSeries::find_ends() {
+  if (ends_known_) return;
+  step_sums_.resize(idx(kSums * stride_));
+  sum_terms(stride_, degree_, coefficients(1), step_sums_.data() + idx(kRateSum * stride_),
+            step_sums_.data() + idx(kMoments * stride_));
+  sums_at_ = -1.0;
+  ends_known_ = true;
+}
+
+void TaylorSeries::evaluate(double s, Vector& z, Vector& v, bool with_swept) const {
   z.resize(n_);
   v.resize(n_);
-  const double per_time = 1.0 / h_;
-  if (s == sums_at_) {
-    sum_with(n_, coefficients(0), 1.0, step_sums_.data() + idx(kMoments * stride_), z.data());
-    sum_with(n_, zeros_.data(), per_time, step_sums_.data() + idx(kRateSum * stride_), v.data());
-  } else {
-    double *along = values_.data(), *rate = along + stride_;
-    series_values(stride_, degree_, coefficients(0), s, along, rate);
-    std::copy_n(along, n_, z.data());
-    sum_with(n_, zeros_.data(), per_time, rate, v.data());
+  const double *from = coefficients(0), *turn = step_sums_.data() + idx(kMoments * stride_),
+               *rate = step_sums_.data() + idx(kRateSum * stride_);
+  if (s != sums_at_) {
+    from = zeros_.data();
+    turn = values_.data();
+    rate = turn + stride_;
+    series_values(stride_, degree_, coefficients(0), s, values_.data(), values_.data() + stride_);
   }
+  end_motion(n_, from, turn, rate, 1.0 / h_, with_swept ? swept(0) : nullptr,
+             with_swept ? swept(-1) : nullptr, z.data(), v.data());
 }
 
 void TaylorSeries::add_swept(Vector& z, Vector& v) const {
@@ -219,7 +263,8 @@ void TaylorSeries::sum_sizes(int first, int count, const double* weight, const N
 }
 
 void TaylorSeries::ranges(double* end, double* size) {
-  std::copy_n(sums(1.0) + idx(kMoments * stride_), stride_, end);
+  find_ends();
+  std::copy_n(step_sums_.data() + idx(kMoments * stride_), stride_, end);
   const int terms = std::min(degree_, kRangeTerms);
   Norm tail{}, slope_tail{};
   for (int k = terms + 1; k <= degree_; ++k)
@@ -265,7 +310,7 @@ double TaylorSeries::work(const double* p, int degree, double s) {
 }
 
 double TaylorSeries::loss(double s, bool swept_too, bool of_added) {
-  of_added = of_added && !dampers_.empty();
+  of_added = of_added && added_damping();
   if ((undamped_ && !of_added) || s == 0.0) return 0.0;
   // With b_k = int z' L_k ds and a_k = int y' L_k ds, L_k over [0, s]: sum (2 k + 1)/s (b_k + a_k) C (b_k + a_k).
   const double* of_z = sums(s) + idx(kMoments * stride_);

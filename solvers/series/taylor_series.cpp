@@ -216,12 +216,13 @@ void TaylorSeries::subtract_product(const LaneVector& values, bool main_only, co
 }
 
 double TaylorSeries::bound_rates() {
-  const int* outer = system_.pattern().outerIndexPtr();
-  k_norm_ = c_norm_ = 0.0;
+  const int *outer = system_.pattern().outerIndexPtr(), *inner = system_.pattern().innerIndexPtr();
+  k_norm_ = c_norm_ = coupling_ = 0.0;
   for (int row = 0; row < n_; ++row) {
     double k_sum = 0.0, c_sum = 0.0;
     for (int s = outer[row]; s < outer[row + 1]; ++s) {
       const double k = std::abs(k_.now[position_[idx(s)]]);
+      if (inner[s] != row) coupling_ = std::max(coupling_, k * mobility(row));
       k_sum += k;
       c_sum += std::abs(c_.now[position_[idx(s)]]);
     }
@@ -261,6 +262,7 @@ double TaylorSeries::largest_eigenvalue(const LaneVector& values) {
 void TaylorSeries::scale_as(const TaylorSeries& other) {
   k_norm_ = other.k_norm_;
   c_norm_ = other.c_norm_;
+  coupling_ = other.coupling_;
   z_scale_ = z_step_scale_ = other.z_scale_;
   v_scale_ = v_step_scale_ = other.v_scale_;
 }
@@ -402,6 +404,7 @@ TaylorSeries::Norm TaylorSeries::next_term(int k) {
 double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double tolerance) {
   h_ = h;
   sums_at_ = -1.0;
+  ends_known_ = false;
   scale_step();
   energy_part_ = std::clamp(kEnergyPart * tolerance, 1e-13, 1e-9);
   const auto column = [&](int k) { return z_.data() + idx(pad_ + k * stride_); };
@@ -449,30 +452,29 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
     return h_ = got;
   };
   double last = 0.0;
-  const double per_time = 1.0 / h;
-  // Of a mode of rate w, term k is no more than growth = (w h)^k/k! times as large as the motion, whose scale is that of the motion.
   const double most_growth = std::max(std::sqrt(k_step), c_step);
-  double growth = most_growth;
   // The last term there is. The kernel takes many at once: as many as the step before needed are nearly always wanted.
   int known = 1;
   const int likely = by_diagonals() ? degree_ : 0;
   const int judged = likely - kFewer;  // terms before this one are not asked whether they are the last
+  const auto note = [&](int from, int to) { note_terms(from, to, most_growth, z_scale, v_scale); };
+  const int unasked =
+      std::max(known_degree + 2, judged);  // before, a term of the right side may still be to come
   for (int k = 2; k <= kMaxDegree; ++k) {
     if (k > known) {
       known = std::min(std::max({k, known_degree + 2, likely}), kMaxDegree);
       next_terms(k, known);
       if (const Norm& size = sizes_[idx(known)]; !std::isfinite(size[0] + size[1])) return end(k, 0.0);
+      if (unasked <= known && k < unasked) {
+        note(k, unasked);
+        k = unasked;
+      }
     }
-    const Norm& size = sizes_[idx(k)];
-    growth = std::max(1.0, growth * (most_growth * inverse(k)));
-    for (std::size_t i = 0; i < kinds; ++i) {
-      z_scale[i] = std::max(z_scale[i], size[i] / growth);
-      v_scale[i] = std::max(v_scale[i], k * per_time * size[i] / growth);
-    }
-    if (k < std::max(known_degree + 2, judged)) continue;  // a term of the right side may still be to come
+    note(k, k + 1);
+    if (k < unasked) continue;
     const double before = last;
     last = excess(k);
-    if (k < std::max(known_degree + 3, judged + 1)) continue;
+    if (k == unasked) continue;
     const double first = inverse(k + 1) * (k_step * inverse(k) * before + c_step * last);
     const double second = inverse(k + 2) * (k_step * inverse(k + 1) * last + c_step * first);
     const bool is_small = first <= 1.0 && second <= 1.0;

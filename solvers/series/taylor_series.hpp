@@ -164,8 +164,8 @@ class TaylorSeries {
   double coefficient(int k, int row) const { return coefficients(k)[row]; }
   /// Finds at once what evaluate(), work() and loss() read at s, where all of them are asked for.
   void sum_up(double s) { sums(s); }
-  /// z and v at s; and what was swept up to s on top of them.
-  void evaluate(double s, Vector& z, Vector& v) const;
+  /// z and v at s; and what was swept up to s on top of them, at once or later.
+  void evaluate(double s, Vector& z, Vector& v, bool with_swept = false) const;
   void add_swept(Vector& z, Vector& v) const;
   /// How far each row comes over the step; bounds of what its terms add up to and, stride() behind them, its terms' slopes by
   /// s from the second term on.
@@ -191,8 +191,9 @@ class TaylorSeries {
     if (row >= n_) return row_mobility_[row - n_];
     return diagonal_mass_ ? inverse_mass_[idx(row)] : mass_norm_;
   }
-  /// |k| between two unknowns over the first one's mass [1/s^2].
+  /// |k| between two unknowns over the first one's mass [1/s^2]; and a bound of all, as rate().
   double coupling(int row, int other) const;
+  double largest_coupling() const { return coupling_ + k_more_; }
   /// Calls each(other, |k|) for every unknown in a row of the stiffness matrix, its own included.
   template <class Each>
   void for_row(int row, const Each& each) const {
@@ -259,8 +260,13 @@ class TaylorSeries {
   void add_row_forces(const double* p, const double* x_0);
   /// The degree up to which terms count in energies.
   int energy_degree() const;
+  void note_terms(int from, int to, double most, Norm& z_scale, Norm& v_scale) const;
   int loss_terms() const;
+  bool added_damping() const {
+    return std::any_of(dampers_.begin(), dampers_.end(), [](const Damper& d) { return d.c != 0.0; });
+  }
   const double* sums(double s);
+  void find_ends();
   std::size_t kinds() const { return kinds_.empty() ? 1 : 2; }  // of unknowns there are: entries of a Norm
   void sum_sizes(int first, int count, const double* weight, const Norm& tail, const Norm& other_tail,
                  double* out) const;
@@ -285,7 +291,7 @@ class TaylorSeries {
   Chain k_chain_{}, c_chain_{};  // where nearly all of them are the main one and its neighbours: these
   bool undamped_ = false, base_main_damping_ = false;  // properties of the system's own C
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
-  double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0;
+  double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0, coupling_ = 0.0;
   SparseCholesky mass_;
   double mass_norm_ = 0.0;   // of M^-1, largest row sum, where M is not diagonal
   LaneVector swept_;         // columns of the sweep behind two of zeros
@@ -301,7 +307,8 @@ class TaylorSeries {
   std::vector<Damper> dampers_;  // beside the system's own, within c_
   int loss_terms_ = 0;           // moments in step_sums_
   double left_of_loss_ = 1e-16;
-  double sums_at_ = -1.0;  // s of step_sums_; -1: none of this step
+  double sums_at_ = -1.0;    // s of step_sums_; -1: none of this step
+  bool ends_known_ = false;  // their first columns are those of this step's end
   LaneVector p_, z_, zeros_;
   // Data of the system's loaded rows.
   Vector row_slopes_, row_forces_, row_mobility_, row_reach_;

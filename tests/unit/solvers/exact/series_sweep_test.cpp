@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "solvers/series/series_kernels.hpp"
 #include "solvers/series/taylor_series.hpp"
 #include "tests/catch.hpp"
 
@@ -106,4 +107,35 @@ TEST_CASE("A sweep of forces on few rows is the dense matrix's series, whatever 
           }
         }
       }
+}
+
+TEST_CASE("The end of a step: sums of its terms, with what was swept on top, for any number of unknowns") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (const int n : {1, 7, 8, 9, 39, 40, 41, 90}) {
+    const int stride = (n + kLanes - 1) / kLanes * kLanes, degree = 11;
+    LaneVector terms(static_cast<std::size_t>((degree + 1) * stride)),
+        y(static_cast<std::size_t>(2 * stride)), sums(static_cast<std::size_t>(2 * stride), -7.0);
+    for (double& term : terms) term = any(random);
+    for (double& value : y) value = any(random);
+    sum_terms(stride, degree, terms.data() + stride, sums.data() + stride, sums.data());
+    const std::size_t room = static_cast<std::size_t>(n) + 1;
+    for (const bool swept : {false, true}) {
+      std::vector<double> z(room, 3.0), v(room, 3.0);
+      end_motion(n, terms.data(), sums.data(), sums.data() + stride, 50.0, swept ? y.data() : nullptr,
+                 swept ? y.data() + stride : nullptr, z.data(), v.data());
+      for (int i = 0; i < n; ++i) {
+        long double value = swept ? y[static_cast<std::size_t>(i)] : 0.0L,
+                    rate = swept ? y[static_cast<std::size_t>(stride + i)] : 0.0L;
+        for (int k = 0; k <= degree; ++k) {
+          value += terms[static_cast<std::size_t>(k * stride + i)];
+          rate += static_cast<long double>(k) * terms[static_cast<std::size_t>(k * stride + i)];
+        }
+        CHECK(z[static_cast<std::size_t>(i)] == Approx(static_cast<double>(value)).margin(1e-14));
+        CHECK(v[static_cast<std::size_t>(i)] == Approx(static_cast<double>(50.0L * rate)).margin(1e-11));
+      }
+      CHECK(z.back() == 3.0);  // nothing behind the last one
+      CHECK(v.back() == 3.0);
+    }
+  }
 }
