@@ -29,22 +29,13 @@ class KinkMoments {
   /// A kink: theta passes `knot` once before the end of the step, or of the part of it that is looked at, and monotonously, and
   /// stands at `end` there. force: the load's coefficient times these are the terms of f from the first power on, at most kMostPowers.
   void add(const PlacedLoad& load, double knot, std::span<const double> force, double end) {
-    const std::size_t i = idx_of(count_++);
-    if (i == table_.room()) make_room();
-    const std::size_t room = table_.room();
-    row_[i] = load.row;
-    double* to = table_.at(0) + i;
-    to[kKnot * room] = knot;
-    to[kEnd * room] = end;
-    to[kAngle * room] = load.angle;
-    to[kRatio * room] = load.ratio;
-    to[kTurn * room] = load.turn;
-    to[kPerTurn * room] = load.per_turn;
-    const double slope = load.coeff * force[0];
-    to[kSlope * room] = load.turn * slope;
-    force_[i / kLanes * kForce + i % kLanes] = slope;
-    all_turn_ &= load.feedback;
-    if (powers_ > 1 || force.size() > 1) add_powers(i, load.coeff, force);
+    add_straight(load, knot, force[0], end);
+    if (powers_ > 1 || force.size() > 1) add_powers(idx_of(count_ - 1), load.coeff, force);
+  }
+  /// The same of one power.
+  void add(const PlacedLoad& load, double knot, double jump, double end) {
+    add_straight(load, knot, jump, end);
+    if (powers_ > 1) add_powers(idx_of(count_ - 1), load.coeff, {&jump, 1});
   }
   /// Gives theta of each kink its terms, at most kMostTerms: angle, then turn Z_k + ratio phi_k. columns: Z_0 and so on, by rows,
   /// `stride` apart, so many of them.
@@ -80,6 +71,23 @@ class KinkMoments {
   struct Work;
   static std::size_t idx_of(int i) { return static_cast<std::size_t>(i); }
   void make_room();
+  void add_straight(const PlacedLoad& load, double knot, double jump, double end) {
+    const std::size_t i = idx_of(count_++);
+    if (i == table_.room()) make_room();
+    const std::size_t room = table_.room();
+    row_[i] = load.row;
+    double* to = table_.at(0) + i;
+    to[kKnot * room] = knot;
+    to[kEnd * room] = end;
+    to[kAngle * room] = load.angle;
+    to[kRatio * room] = load.ratio;
+    to[kTurn * room] = load.turn;
+    to[kPerTurn * room] = load.per_turn;
+    const double slope = load.coeff * jump;
+    to[kSlope * room] = load.turn * slope;
+    force_[i / kLanes * kForce + i % kLanes] = slope;
+    all_turn_ &= load.feedback;
+  }
   void add_powers(std::size_t i, double factor, std::span<const double> force);
   template <int kNodes>
   void find_moments(double end, int degree, std::size_t place_terms);

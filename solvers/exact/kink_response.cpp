@@ -25,12 +25,12 @@ constexpr double kShortened = 0.9;
 // Part of the share of a motion that is not found exactly that a first sweep alone may be off by; where it has to be exact, more is.
 constexpr double kOfInexact = 0.25;
 
-/// sum_ik gain_i pull_k d^8 where place_i < end is d > 0 behind place_k, of kinks in whole lanes with gains and pulls of zero
-/// behind the last one.
+/// sum_ik gain_i pull_k (beside d^6 + apart d^8) where place_i < end is d > 0 behind place_k, of kinks in whole lanes with gains and
+/// pulls of zero behind the last one.
 struct RowsApart {
   template <class L>
   [[gnu::always_inline]] static double run(int count, double end, const double* place, const double* pull,
-                                           const double* gain) {
+                                           const double* gain, double beside, double apart) {
     L sum{};
     for (int k = 0; k < count; k += kLanes) {
       L from, of_all{}, x;
@@ -40,9 +40,7 @@ struct RowsApart {
         L d{};
         raise(d, place[i] - from);
         d *= d;
-        d *= d;
-        d *= d;
-        of_all += gain[i] * d;
+        of_all += (gain[i] * (d * d * d)) * (beside + apart * d);
       }
       load(pull + k, x);
       sum += x * of_all;
@@ -117,7 +115,7 @@ bool KinkResponse::find(double end, const double* z_end, double share) {
   TaylorSeries::RowMoments moments = kinks.find_moments(end, degree, rule.nodes, rule.place_terms);
   moments.own_rows = !loads_.kinks_share_rows();
   if (laws_.active()) {  // which read all parts of the motion
-    moments_.assign(idx((degree + 1) * series_.stride()), 0.0);
+    moments_.resize(idx((TaylorSeries::kMostSwept + 1) * series_.stride()), 0.0);
     series_.add_to_columns(moments, degree, moments_.data());
     series_.sweep(moments_.data(), degree);
   } else {
@@ -194,7 +192,8 @@ double KinkResponse::nearness(int row, const ScalarTerm& law, double d) const {
     if (e.index == row) return 1.0;
     coupling = std::max(coupling, series_.coupling(row, e.index));
   }
-  return std::min(1.0, h * h * coupling * d_2 / 20.0 + quarter * quarter * (d_2 * d_2) / 840.0);
+  return std::min(1.0,
+                  (1.0 / 20.0) * h * h * coupling * d_2 + (1.0 / 840.0) * quarter * quarter * (d_2 * d_2));
 }
 
 /// What slopes of smooth loads and laws that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
@@ -213,18 +212,21 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end, const ExpandedLoa
                                                    bool by_nearness) const {
   static_assert(ExpandedLaws::kChanges == 3);
   const KinkMoments& kinks = loads_.kinks();
-  const double h = series_.step();
+  const double h = series_.step(), square = h * h;
+  // Divided out here, not in the loops over kinks: a division takes as long as all the rest.
+  const double angle = square / 360.0, speed = h / 60.0, angle_behind = square / 72576.0,
+               speed_behind = h / 8064.0, left_out = square / 120.0;
   Others sum;
   double most = -1.0;
   for (int i = 0; i < kinks.count(); ++i) {
     const double d = std::max(0.0, end - kinks.place(i)), fifth = d * d * d * d * d;
-    double of_slopes = h * h * change.by_angle * d / 360.0 + h * change.by_speed / 60.0;
+    double of_slopes = angle * change.by_angle * d + speed * change.by_speed;
     for (const ExpandedLaws::SlopeChange& law : laws_.slope_changes()) {
-      double of_law = h * h * law.by_angle * d / 360.0 + h * law.by_speed / 60.0;
+      double of_law = angle * law.by_angle * d + speed * law.by_speed;
       if (corrects_)
         of_law = 6.0 * of_law * of_law * d * d +
-                 d * d * d * (h * h * law.by_angle_behind * d / 72576.0 + h * law.by_speed_behind / 8064.0);
-      of_law += h * h * law.left_out / 120.0;
+                 d * d * d * (angle_behind * law.by_angle_behind * d + speed_behind * law.by_speed_behind);
+      of_law += left_out * law.left_out;
       if (by_nearness) of_law *= nearness(kinks.row(i), *law.term, d);
       of_slopes = std::max(of_slopes, of_law);
     }
@@ -250,8 +252,11 @@ KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) {
                more = quarter * quarter * quarter / 3628800.0;
   Others others;
   if (!loads_.kinks_share_rows()) {
-    others.error = square * bound_of_rows_apart(end, beside, std::max(two, more));
-    if (others.error <= kMostRowsApart * allowed) return others;
+    const double apart = std::max(two, more);
+    for (const bool coarse : {true, false}) {
+      others.error = square * bound_of_rows_apart(end, beside, apart, coarse);
+      if (others.error <= kMostRowsApart * allowed) return others;
+    }
     others.error = 0.0;
   }
   double most = 0.0;
@@ -279,12 +284,14 @@ KinkResponse::Others KinkResponse::error_of_others(double end, double allowed) {
   return others;
 }
 
-/// A bound of error_of_others() over h^2 where each kink has a row of its own: neighbours by their couplings, and all as if they
-/// were two rows apart.
-double KinkResponse::bound_of_rows_apart(double end, double beside, double apart) {
+/// A bound of error_of_others() over h^2 where each kink has a row of its own: neighbours by their couplings, or, coarse, all by the
+/// largest one; and all as if they were two rows apart.
+double KinkResponse::bound_of_rows_apart(double end, double beside, double apart, bool coarse) {
   const KinkMoments& kinks = loads_.kinks();
   const double *gain = loads_.kink_sizes().gain(), *pull = loads_.kink_sizes().pull();
-  double sum = apart * run_widest<RowsApart>(kinks.count(), end, kinks.places(), pull, gain);
+  double sum = run_widest<RowsApart>(kinks.count(), end, kinks.places(), pull, gain,
+                                     coarse ? beside * series_.largest_coupling() : 0.0, apart);
+  if (coarse) return sum;
   on_row_.resize(idx(series_.stride()));
   for (int i = 0; i < kinks.count(); ++i) on_row_[idx(kinks.row(i))] = {kinks.place(i), pull[i]};
   for (int i = 0; i < kinks.count(); ++i) {

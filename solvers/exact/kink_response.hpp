@@ -67,7 +67,7 @@ class KinkResponse {
     double between = 0.0;  // s between the two kinks that make most of it
   };
   Others error_of_others(double end, double allowed);
-  double bound_of_rows_apart(double end, double beside, double apart);
+  double bound_of_rows_apart(double end, double beside, double apart, bool coarse);
   Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change, double enough) const;
   Others error_of_slopes(double end, const ExpandedLoads::SlopeChange& change, bool by_nearness) const;
   double nearness(int row, const ScalarTerm& law, double d) const;
@@ -89,7 +89,7 @@ class KinkResponse {
     double place = 0.0, pull = 0.0;
   };
   std::vector<OnRow> on_row_;  // of the kink on each row, while they are bounded; zeros: none
-  LaneVector moments_;         // in columns, where laws add to them
+  LaneVector moments_;         // in columns, where laws add to them; zeros between sweeps
 };
 
 }  // namespace drev

@@ -15,6 +15,67 @@ namespace {
 constexpr double kKinkInside = 1e-4;
 constexpr int kMostListed = 1 << 30;  // kinks counted over all listings before their count starts again
 
+/// The way of a load over knots between which it is straight: behind one it differs by jump (theta - knot).
+struct StraightWay {
+  double bound, angle_slope, jump = 0.0;
+  void take(double slope) { jump = slope - std::exchange(angle_slope, slope); }
+  double force() const { return jump; }
+  double chord() const { return std::abs(jump); }
+  double slope() const { return std::abs(jump); }
+};
+struct TableWay : StraightWay {
+  const TableStretches& table;
+  TableStretches::Place place;
+  bool pass(bool rises, double) {
+    table.step(place, rises);
+    bound = rises ? table.high(place) : table.low(place);
+    take(table.slope(place));
+    return true;
+  }
+};
+/// The same of a load that is asked for each stretch.
+struct StretchWay : StraightWay {
+  const StraightLoads& loads;
+  StraightLoads::Load& load;
+  double t;
+  bool pass(bool rises, double) {
+    const LoadStretch& ahead = loads.look_beyond(load, t, bound, rises);
+    bound = rises ? ahead.high : ahead.low;
+    take(ahead.angle_slope);
+    return ahead.time_slope == load.stretch.time_slope;
+  }
+};
+
+/// The way of a load over knots between which it is a cubic. Bounds of what it differs behind a knot, over a turn: |f| <= chord turn,
+/// |f'| <= slope.
+struct CubicWay {
+  double bound;
+  ExpandedLoads& loads;
+  ExpandedLoads::Load& load;
+  CubicPiece piece;
+  double about, most_chord = 0.0, most_slope = 0.0;
+  std::span<const double> behind = {};
+  bool pass(bool rises, double turn) {
+    const CubicPiece next = load.knots->piece(bound, rises ? 1.0 : -1.0, load.piece_speed);
+    const auto differs = loads.behind_knot(load, piece, about, bound, next, turn);
+    piece = next;
+    about = bound;
+    bound = rises ? next.high : next.low;
+    if (!differs) return false;
+    behind = *differs;
+    most_chord = most_slope = 0.0;
+    double power = 1.0;
+    for (std::size_t q = 0; q < behind.size(); ++q, power *= turn) {
+      most_chord += std::abs(behind[q]) * power;
+      most_slope += static_cast<double>(q + 1) * std::abs(behind[q]) * power;
+    }
+    return true;
+  }
+  std::span<const double> force() const { return behind; }
+  double chord() const { return most_chord; }
+  double slope() const { return most_slope; }
+};
+
 }  // namespace
 
 void LoadSeries::expand_kinks(const TaylorSeries& series, std::size_t most) {
@@ -55,36 +116,31 @@ bool LoadSeries::list_sweep_kinks(TaylorSeries& series, double end, const double
   return true;
 }
 
-/// Lists the kinks that a load passes on its way to the angle `end` at a first rate by s, on a piece from low to high at the start.
-/// next(bound, rises, turn, behind): the piece behind a bound, and what the load differs there over a turn behind it; false: a kink
-/// of none of this kind. False: it leaves a piece at one.
-template <class Next>
-bool LoadSeries::list_kinks_of(PlacedLoad& l, double low, double high, double rate, double end,
-                               const TaylorSeries& series, bool projected, const Next& next) {
+/// Lists the kinks that a load passes on its way to the angle `end` at a first rate by s. way: the bound of its piece ahead; pass()
+/// goes on behind it, over a turn of the angle, and tells what the load differs there; false: a kink of none of this kind. False: it
+/// leaves a piece at one.
+template <class Way>
+bool LoadSeries::list_kinks_of(PlacedLoad& l, Way& way, double rate, double end, const TaylorSeries& series,
+                               bool projected) {
   const bool rises = rate > 0.0;
   double steepest = 0.0;
-  for (double bound = rises ? high : low; rises ? end > bound : end < bound;) {
-    const double turn = std::abs(end - bound);
-    Behind behind;
-    l.watched = !next(bound, rises, turn, behind) || !(rises ? behind.high > bound : behind.low < bound);
-    if (l.watched) break;
-    // Bounds of the force over the turn behind the knot: |f| <= chord turn, |f'| <= slope.
-    double chord = std::abs(behind.force[0]), slope = chord, power = turn;
-    for (std::size_t q = 1; q < behind.force.size(); ++q, power *= turn) {
-      chord += std::abs(behind.force[q]) * power;
-      slope += static_cast<double>(q + 1) * std::abs(behind.force[q]) * power;
+  while (rises ? end > way.bound : end < way.bound) {
+    const double knot = way.bound;
+    if (!way.pass(rises, std::abs(end - knot)) || !(rises ? way.bound > knot : way.bound < knot)) {
+      l.watched = true;
+      break;
     }
     if (projected) {
-      const double inside = kKinkInside * std::abs(l.coeff * chord * rate) * relative_move(series, l.row);
+      const double inside =
+          kKinkInside * std::abs(l.coeff * way.chord() * rate) * relative_move(series, l.row);
       l.watched = inside > kMostInside;
       if (l.watched) break;
       kinks_inside_ = std::max(kinks_inside_, inside);
     }
-    kinks_.add(l, bound, behind.force, end);
-    kink_sizes_.add(l, rate, chord, slope);
+    kinks_.add(l, knot, way.force(), end);
+    kink_sizes_.add(l, rate, way.chord(), way.slope());
     shared_rows_ |= std::exchange(last_kink_[idx(l.row)], listed_before_ + kinks_.count()) > listed_before_;
-    steepest += slope;
-    bound = rises ? behind.high : behind.low;
+    steepest += way.slope();
   }
   if (l.feedback && projected)
     l.contraction = 0.5 * h_ * h_ * l.coeff * l.coeff * steepest * series.mobility(l.row);
@@ -112,17 +168,18 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
       all = false;
       continue;
     }
-    StraightLoads::look_from_start(l);
-    double slope = l.stretch.angle_slope, jump = 0.0;
-    const auto next = [&](double bound, bool rises, double, Behind& behind) {
-      const StraightLoads::Ahead ahead = straight_.look_beyond(l, t_, bound, rises);
-      if (ahead.time_slope != l.stretch.time_slope) return false;
-      jump = ahead.angle_slope - std::exchange(slope, ahead.angle_slope);
-      behind = {ahead.low, ahead.high, {&jump, 1}};
-      return true;
-    };
-    all &= list_kinks_of(l, l.stretch.low, l.stretch.high, near.rate, near.end, series, projected, next);
+    const double bound = near.rate > 0.0 ? l.stretch.high : l.stretch.low;
+    if (l.table >= 0) {
+      TableWay way{{bound, l.stretch.angle_slope}, straight_.table_of(l), l.place};
+      all &= list_kinks_of(l, way, near.rate, near.end, series, projected);
+      l.ahead_place = way.place;
+    } else {
+      l.ahead = l.stretch;
+      StretchWay way{{bound, l.stretch.angle_slope}, straight_, l, t_};
+      all &= list_kinks_of(l, way, near.rate, near.end, series, projected);
+    }
   }
+  if (projected || !all) straight_.mark_near();
   if (expanded_.knotted()) {
     for (ExpandedLoads::Load& l : expanded_.loads()) {
       if (!l.acts || l.knots == nullptr) continue;
@@ -140,19 +197,10 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
         all = false;
         continue;
       }
-      CubicPiece piece = l.piece;
-      double about = l.about;
-      const auto next = [&](double bound, bool rises, double turn, Behind& found) {
-        const CubicPiece behind = l.knots->piece(bound, rises ? 1.0 : -1.0, l.piece_speed);
-        const auto force = expanded_.behind_knot(l, piece, about, bound, behind, turn);
-        piece = behind;
-        about = bound;
-        if (force) found = {behind.low, behind.high, *force};
-        return force.has_value();
-      };
       const double end =
           l.angle + l.ratio * to * (phi_[1] + to * phi_[2]) + (l.feedback ? l.coeff * turns[row] : 0.0);
-      all &= list_kinks_of(l, l.piece.low, l.piece.high, rate, end, series, projected, next);
+      CubicWay way{rate > 0.0 ? l.piece.high : l.piece.low, expanded_, l, l.piece, l.about};
+      all &= list_kinks_of(l, way, rate, end, series, projected);
     }
   }
   kink_sizes_.find(h_);

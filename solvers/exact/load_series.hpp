@@ -130,14 +130,9 @@ class LoadSeries {
   double given_kink_work(const TaylorSeries& series, int kink, double end) const;
   void find_ranges(TaylorSeries& series);
   bool list_kinks(const TaylorSeries& series, double to, bool projected);
-  /// A piece behind a knot, and what the load differs there (KinkMoments::add).
-  struct Behind {
-    double low = 0.0, high = 0.0;
-    std::span<const double> force = {};
-  };
-  template <class Next>
-  bool list_kinks_of(PlacedLoad& load, double low, double high, double rate, double end,
-                     const TaylorSeries& series, bool projected, const Next& next);
+  template <class Way>
+  bool list_kinks_of(PlacedLoad& load, Way& way, double rate, double end, const TaylorSeries& series,
+                     bool projected);
   /// Calls with every load that says knots, and the bounds that hold for it.
   template <class Each>
   void for_knotted(const Each& each) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solvers/linear/lane_pair.hpp"
 
@@ -207,6 +208,7 @@ void StraightLoads::move_as(const StraightLoads& other) {
   layers_ = other.layers_;
   near_ = other.near_;
   stale_ = other.stale_;
+  marked_ = other.marked_;
 }
 
 void StraightLoads::refresh(Load& l) {
@@ -250,10 +252,9 @@ void StraightLoads::look_up(Load& l, double t, double direction) {
   place(l);
 }
 
-StraightLoads::Ahead StraightLoads::look_beyond_call(Load& l, double t, double bound, bool rises) const {
+const LoadStretch& StraightLoads::look_beyond(Load& l, double t, double bound, bool rises) const {
   l.ahead_angle_0 = bound;
-  l.ahead = l.term->load->stretch(t, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
-  return {l.ahead.low, l.ahead.high, l.ahead.angle_slope, l.ahead.time_slope};
+  return l.ahead = l.term->load->stretch(t, bound, rises ? 1.0 : -1.0).value_or(LoadStretch{});
 }
 
 void StraightLoads::locate(double t) {
@@ -274,20 +275,34 @@ void StraightLoads::for_flagged(const Layer& layer, const Each& each) {
   }
 }
 
+void StraightLoads::advance_other(Load& l) {
+  l.stretch = l.ahead;
+  l.angle_0 = l.ahead_angle_0;
+  place(l);
+}
+
+/// Many a step: no more than what changes, each number by itself.
+void StraightLoads::advance_table(Load& l) {
+  const TableStretches& table = table_of(l);
+  const double low = table.low(l.ahead_place), high = table.high(l.ahead_place),
+               slope = table.slope(l.ahead_place);
+  double* to = &value(l, static_cast<Quantity>(0));
+  const auto put = [&](Quantity q, double x) { to[q * stride_] = x; };
+  put(kLow, l.stretch.low = low);
+  put(kHigh, l.stretch.high = high);
+  put(kAngle0, l.angle_0 = low);
+  put(kAngleSlope, l.stretch.angle_slope = slope);
+  put(kTorque, l.stretch.torque = table.torque(l.ahead_place));
+  l.place.number = l.ahead_place.number;
+  l.place.turns = l.ahead_place.turns;
+}
+
 void StraightLoads::advance(double t, bool whole) {
   if (whole)
     for (const Near& near : near_) {
       Load& l = load_of(near);
       if (l.watched) continue;
-      if (l.table >= 0) {
-        l.place = l.ahead_place;
-        tables_[idx(l.table)].read(l.place, l.stretch);
-        l.angle_0 = l.stretch.low;
-      } else {
-        l.stretch = l.ahead;
-        l.angle_0 = l.ahead_angle_0;
-      }
-      place(l);
+      l.table >= 0 ? advance_table(l) : advance_other(l);
     }
   for (Layer& layer : layers_) {
     run_widest<BesideKnot>(stride_, static_cast<const double*>(layer.values.data()), flags_.data());
@@ -317,18 +332,20 @@ void StraightLoads::add_to(TaylorSeries& series, double t, double h, const std::
 const std::vector<StraightLoads::Near>& StraightLoads::near_knots(const TaylorSeries& series, double to,
                                                                   const std::array<double, 3>& phi,
                                                                   const double* turns) {
-  for (const Near& near : near_) {
-    Load& l = load_of(near);
-    l.watched = false;
-    l.contraction = 0.0;
-  }
+  if (std::exchange(marked_, false))
+    for (const Near& near : near_) {
+      Load& l = load_of(near);
+      l.watched = false;
+      l.contraction = 0.0;
+    }
   near_.clear();
   for (const Layer& layer : layers_) {
     run_widest<Reach>(stride_, static_cast<const double*>(layer.values.data()), to, phi.data(),
                       series.coefficients(1), turns, turned_.data(), flags_.data());
+    const double* angle = layer.values.data() + idx(kAngle * stride_);
     for_flagged(layer, [&](int k) {
       Load& l = loads_[idx(k)];
-      refresh(l);
+      l.angle = angle[l.row];
       const double* turned = turned_.data() + l.row;
       near_.push_back({k, turned[2 * stride_] >= 0.0, turned[0], turned[stride_]});
     });

@@ -42,21 +42,10 @@ class StraightLoads {
   /// Takes the stretches that loads came to by move(); where `whole`, those ahead of the step that was listed.
   void advance(double t, bool whole);
   void look_up(Load& load, double t, double direction);
-  /// What lies ahead of a load, over one bound after the other: first the stretch at hand; then, over a bound that it comes to at
-  /// time t, the one behind it, which it keeps for advance(): its bounds and its slopes.
-  struct Ahead {
-    double low, high, angle_slope, time_slope;
-  };
-  static void look_from_start(Load& load) {
-    load.ahead = load.stretch;
-    load.ahead_place = load.place;
-  }
-  Ahead look_beyond(Load& load, double t, double bound, bool rises) const {
-    if (load.table < 0) return look_beyond_call(load, t, bound, rises);
-    const TableStretches& table = tables_[idx(load.table)];
-    load.ahead_place = table.next(load.ahead_place, rises);
-    return {table.low(load.ahead_place), table.high(load.ahead_place), table.slope(load.ahead_place), 0.0};
-  }
+  /// The table of a load that has one.
+  const TableStretches& table_of(const Load& load) const { return tables_[idx(load.table)]; }
+  /// The stretch of another behind a bound that it comes to at time t, kept for advance().
+  const LoadStretch& look_beyond(Load& load, double t, double bound, bool rises) const;
 
   /// Adds to p, by powers of s over a step of h [s] from t, the torques along the nominal motion phi; to the series the slopes.
   void add_to(TaylorSeries& series, double t, double h, const std::array<double, 3>& phi, double* p);
@@ -70,6 +59,8 @@ class StraightLoads {
     double rate, end;  // first rate by s; angle at `to`
   };
   Load& load_of(const Near& near) { return loads_[idx(near.load)]; }
+  /// Some of those near have `watched` or `contraction` set, which end with this step.
+  void mark_near() { marked_ = true; }
   const std::vector<Near>& near_knots(const TaylorSeries& series, double to, const std::array<double, 3>& phi,
                                       const double* turns);
   /// Work of the slopes on the motion from that of the series' start to z [J].
@@ -105,9 +96,10 @@ class StraightLoads {
   struct SlopeWork;
   double* values(Layer& layer, Quantity q) const { return layer.values.data() + idx(q * stride_); }
   double& value(const Load& load, Quantity q) { return values(layers_[load.layer], q)[load.row]; }
-  Ahead look_beyond_call(Load& load, double t, double bound, bool rises) const;
   void place(Load& load);
   void refresh(Load& load);
+  void advance_table(Load& load);
+  void advance_other(Load& load);
   template <class Each>
   void for_flagged(const Layer& layer, const Each& each);
 
@@ -121,6 +113,7 @@ class StraightLoads {
       turned_;  // turned_: by row, Near's rate, end and what is not negative where it is monotone
   std::vector<unsigned> flags_;  // of a layer's rows, kLanes in each
   bool stale_ = false;           // loads_ lack the angles
+  bool marked_ = false;          // mark_near()
 };
 
 }  // namespace drev

@@ -23,6 +23,7 @@ TableStretches::TableStretches(const LoadTable& table)
     stretches_.push_back({knot, stretch.torque, stretch.angle_slope});
     knot = stretch.high;
   }
+  last_ = stretches_.size() - 1;
 }
 
 TableStretches::Place TableStretches::find(double angle, double phase, double direction) const {

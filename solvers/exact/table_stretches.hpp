@@ -23,20 +23,27 @@ class TableStretches {
   };
   /// The stretch about an angle, as LoadTable::stretch() has it.
   Place find(double angle, double phase, double direction) const;
-  /// The one behind its upper bound (rises) or its lower one.
-  Place next(Place from, bool rises) const {
-    const std::size_t last = stretches_.size() - 1;
-    if (rises && from.number == last) return {0, from.turns + 1.0, from.phase};
-    if (!rises && from.number == 0) return {last, from.turns - 1.0, from.phase};
-    return {rises ? from.number + 1 : from.number - 1, from.turns, from.phase};
+  /// Goes on to the one behind its upper bound (rises) or its lower one.
+  void step(Place& place, bool rises) const {
+    const std::size_t end = rises ? last_ : 0;
+    if (place.number != end) {
+      place.number += rises ? 1 : std::size_t(-1);
+    } else {
+      place.number = last_ - end;
+      place.turns += rises ? 1.0 : -1.0;
+    }
   }
   /// A table without a change of slope has one stretch without bounds.
   bool bounded() const { return bounded_; }
-  double low(Place p) const { return p.turns * period_ + stretches_[p.number].knot - p.phase; }
-  double high(Place p) const { return low(next(p, true)); }
-  double slope(Place p) const { return stretches_[p.number].slope; }
+  double low(const Place& p) const { return p.turns * period_ + stretches_[p.number].knot - p.phase; }
+  double high(Place p) const {
+    step(p, true);
+    return low(p);
+  }
+  double slope(const Place& p) const { return stretches_[p.number].slope; }
+  double torque(const Place& p) const { return stretches_[p.number].torque; }  ///< at its lower bound
   /// With the torque at its lower bound. One number after the other: a copy of what was just stored in parts has to wait for it.
-  void read(Place p, LoadStretch& to) const {
+  void read(const Place& p, LoadStretch& to) const {
     const Stretch& s = stretches_[p.number];
     to.torque = s.torque;
     to.time_slope = 0.0;
@@ -52,6 +59,7 @@ class TableStretches {
   const double *values_, *arguments_;
   double period_;
   bool bounded_ = true;
+  std::size_t last_ = 0;  // number of the last stretch
   std::vector<Stretch> stretches_;
 };
 

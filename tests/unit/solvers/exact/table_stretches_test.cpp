@@ -70,7 +70,7 @@ TEST_CASE("Stretches of a table follow each other over its turns, up and down") 
           CHECK(torque_at(s, angle) == Approx(points.torque(angle + phase)).margin(1e-10));
         }
         const double bound = rises ? s.high : s.low;
-        place = stretches.next(place, rises);
+        stretches.step(place, rises);
         CHECK((rises ? stretches.low(place) : stretches.high(place)) == bound);  // to the last bit
         CHECK(stretch_at(stretches, place).angle_slope != s.angle_slope);
       }
@@ -93,11 +93,12 @@ TEST_CASE("A stretch over the table's end is one, and a narrow flank there is on
   const TableStretches teeth(saw.table(0.0));
   REQUIRE(teeth.bounded());
   for (const double turns : {0.0, 7.0}) {
-    const auto place = teeth.find(turns * turn + 3.0, 0.0, 1.0);
+    auto place = teeth.find(turns * turn + 3.0, 0.0, 1.0);
     CHECK(torque_at(stretch_at(teeth, place), turns * turn + 3.0) == Approx(saw.torque(3.0)).epsilon(1e-9));
-    CHECK(stretch_at(teeth, teeth.next(place, true)).angle_slope < -1e9);
-    CHECK(teeth.low(teeth.next(teeth.next(place, true), true)) ==
-          Approx((turns + 1.0) * turn).epsilon(1e-14));
+    teeth.step(place, true);
+    CHECK(stretch_at(teeth, place).angle_slope < -1e9);
+    teeth.step(place, true);
+    CHECK(teeth.low(place) == Approx((turns + 1.0) * turn).epsilon(1e-14));
   }
 }
 
