@@ -30,19 +30,13 @@ template <class L, class Body>
   constexpr bool kSweep = std::remove_reference_t<Body>::kSweep;
   const SeriesRecursion& r = body.r;
   const auto size = [&](int m) -> double& { return sizes[m - first]; };
+  bool changed = false;
   const auto finish = [&](int m, L& largest) __attribute__((always_inline)) {
     end_term();
     if constexpr (kSweep) return;
-    double* term = r.z + static_cast<std::ptrdiff_t>(m) * r.stride;
-    if (r.hook.add != nullptr && r.hook.add(r.hook.of, m, term)) {
-      largest = L{};
-      for (int i = 0; i < r.stride; i += kLanes) {
-        L x;
-        load(term + i, x);
-        magnitude(x);
-        raise(largest, x);
-      }
+    if (r.hook.add != nullptr && r.hook.add(r.hook.of, m, term_of(r.z, r.stride, m))) {
       body.take_back(m);
+      changed = true;
     }
     size(m) = largest_of(largest);
   };
@@ -58,6 +52,16 @@ template <class L, class Body>
     finish(m, largest);
   }
   if constexpr (!kSweep) {
+    // Only now: a load of lanes of which one was just stored would have to wait for it.
+    for (m = first; changed && m <= last; ++m) {
+      L largest{}, x;
+      for (int i = 0; i < r.stride; i += kLanes) {
+        load(term_of(r.z, r.stride, m) + i, x);
+        magnitude(x);
+        raise(largest, x);
+      }
+      size(m) = largest_of(largest);
+    }
     // Comparisons drop a NaN, but what is not finite in one term stays so in those behind it.
     for (m = last > first ? last - 1 : last; m <= last; ++m) {
       L not_finite{}, x;
