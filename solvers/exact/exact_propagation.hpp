@@ -42,7 +42,7 @@ struct ExactOptions {
   /// deflection and speed so far [-], before the motion itself amplifies it. Shared out evenly over
   /// the time.
   double tolerance = 1e-10;
-  static constexpr Range kTolerance{1e-15, 1e-3};
+  static constexpr Range kTolerance{1e-15, 1e-2};
   double t_start = 0.0;  ///< s
   double t_end = 0.0;    ///< s, > t_start
   /// Largest energy error that passes, relative to the run's energy scale [-]. 0: 1e-6, or twice the tolerance

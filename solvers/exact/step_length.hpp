@@ -3,7 +3,7 @@
 ///
 /// Passes over projected forces want omega h <= 3 (legendre_projection.hpp). The series itself bears more, and so do kinks that are
 /// swept as long as they move little: up to omega h = 4 a step costs less than its length gains, with the short series of a loose
-/// tolerance up to 5. Such a step is tried; where it is given up, the next kPause steps are no longer than passes bear, twice as many each time that fewer than kEnough went well since:
+/// tolerance up to 5 or 5.5. Such a step is tried; where it is given up, the next kPause steps are no longer than passes bear, twice as many each time that fewer than kEnough went well since:
 /// a step given up costs what some ten longer ones gain.
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,9 @@ class StepLength {
  public:
   static constexpr double kProjectedAngle = 3.0;  ///< omega h of a step with projected forces, at most [rad]
   /// omega h of any step, at most [rad].
-  static constexpr double longest_angle(double tolerance) { return tolerance < 1e-5 ? 4.0 : 5.0; }
+  static constexpr double longest_angle(double tolerance) {
+    return tolerance < 1e-5 ? 4.0 : tolerance < 5e-3 ? 5.0 : 5.5;
+  }
 
   /// fastest: the rate of the fastest mode [rad/s], or a bound of it; 0: none. duration: of the run [s].
   void start(double fastest, double duration, double tolerance) {

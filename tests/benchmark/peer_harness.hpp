@@ -297,10 +297,10 @@ class Drev {
     propagate(p_.system, {.tolerance = tolerance, .t_end = p_.horizon(), .energy_tolerance = 1.0}, {&end});
     return known = errors(p_, end.samples);
   }
-  /// The loosest of 1e-3, 3e-4, 1e-4, ... whose error is no larger, and whose tighter neighbour's is
+  /// The loosest of 1e-2, 3e-3, 1e-3, ... whose error is no larger, and whose tighter neighbour's is
   /// not either (or none: 0).
   double loosest(const std::vector<double>& limit) {
-    const auto tolerance = [](int i) { return (i % 2 ? 3.0 : 1.0) * std::pow(10.0, -3 - (i + 1) / 2); };
+    const auto tolerance = [](int i) { return (i % 2 ? 3.0 : 1.0) * std::pow(10.0, -2 - (i + 1) / 2); };
     for (int i = 0; i < 22; ++i)
       if (no_larger(error(tolerance(i)), limit) && no_larger(error(tolerance(i + 1)), limit))
         return tolerance(i);

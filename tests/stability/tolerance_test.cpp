@@ -8,6 +8,7 @@
 #include <drev/solvers/run/observer.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -89,15 +90,16 @@ TEST_CASE("The true error stays below 3 times the tolerance on 72 random models"
                             {"average_acceleration", 1e-5},
                             {"generalized_alpha:0.8", 1e-5}};
   for (const Kind& kind : kKinds) {
-    double worst[5][4] = {};
+    constexpr std::array<double, 5> kTolerances{1e-2, 1e-3, 1e-5, 1e-7, 1e-9};
+    double worst[5][kTolerances.size()] = {};
     for (unsigned i = 0; i < kModels; ++i) {
       const unsigned seed = kind.first_seed + i;
       const RandomModel model = random_model(seed, kind.ranges);
       const Judge judge(model, seed);
       for (int m = 0; m < 5; ++m)
-        for (int k = 0; k < 4; ++k) {
-          const double tolerance = std::pow(10.0, -3 - 2 * k);
-          if (tolerance < 0.99 * methods[m].least) continue;
+        for (std::size_t k = 0; k < kTolerances.size(); ++k) {
+          const double tolerance = kTolerances[k];
+          if (tolerance < methods[m].least) continue;
           State state = State::initial(model.system);
           const RunSummary run = m == 0 ? propagate(model.system,
                                                     {.tolerance = tolerance,
@@ -124,7 +126,7 @@ TEST_CASE("The true error stays below 3 times the tolerance on 72 random models"
     }
     INFO("worst of the " << kind.name << " models, over the tolerance:" << table.str());
     // Most of the tolerance is used by some model: the bound is no empty one.
-    CHECK(worst[0][0] > 0.03);
+    CHECK(worst[0][1] > 0.03);
   }
 }
 

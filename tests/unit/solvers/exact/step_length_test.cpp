@@ -59,6 +59,8 @@ TEST_CASE("A longer step that is given up is tried again, the later the sooner i
   loose.start(2.0, end, 1e-3);
   CHECK(loose.longest_projected() == 1.5);
   CHECK(loose.longest() == 2.5);
+  loose.start(2.0, end, 1e-2);
+  CHECK(loose.longest() == 2.75);
   CHECK(step.next(0.0, end) == Approx(2.0).epsilon(1e-5));
   CHECK(step.hold_back(1.4) == 1.4);  // not a longer one
   CHECK(step.next(0.0, end) > step.longest_projected());
