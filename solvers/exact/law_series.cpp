@@ -31,7 +31,7 @@ double work_of(std::span<const double> a, std::span<const double> b, double s) {
   for (std::size_t j = 0; j < a.size(); ++j, s_j *= s) {
     double s_k = s_j * s;
     for (std::size_t k = 1; k < b.size(); ++k, s_k *= s)
-      sum += a[j] * b[k] * s_k * static_cast<double>(k) * kInverse[j + k];
+      sum += a[j] * b[k] * s_k * static_cast<double>(k) / static_cast<double>(j + k);
   }
   return sum;
 }

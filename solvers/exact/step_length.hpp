@@ -3,8 +3,8 @@
 ///
 /// Passes over projected forces want omega h <= 3 (legendre_projection.hpp). The series itself bears more, and so do kinks that are
 /// swept as long as they move little: up to omega h = 4 a step costs less than its length gains, with the short series of a loose
-/// tolerance up to 5 or 5.5. Such a step is tried; where it is given up, the next kPause steps are no longer than passes bear, twice as many each time that fewer than kEnough went well since:
-/// a step given up costs what some ten longer ones gain.
+/// tolerance up to 5 or 5.5. Such a step is tried; where it is given up, the next kPause steps are no longer than passes bear, twice
+/// as many each time that fewer than kEnough went well since: a step given up costs what some ten longer ones gain.
 #include <algorithm>
 #include <cmath>
 
