@@ -65,5 +65,5 @@ def test_contacts_and_charts(backend):
     assert list(drawn[0][1]) == [7, 10] and list(drawn[1][1]) == [9, 11]
     with pytest.raises(ValueError, match="no contact"):
         swinging().run(duration_s=0.1).plot_contacts(backend=backend)
-    chart = drev.load("two_inertia").chart(methods=["exact", "rk4"], limit_s=0.001)
+    chart = drev.load("two_inertia").chart(methods=["exact", "rk4"], limit_s=0.03)
     assert len(curves(chart.plot(backend=backend))) == 2
