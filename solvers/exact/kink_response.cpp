@@ -192,8 +192,7 @@ double KinkResponse::nearness(int row, const ScalarTerm& law, double d) const {
     if (e.index == row) return 1.0;
     coupling = std::max(coupling, series_.coupling(row, e.index));
   }
-  return std::min(1.0,
-                  (1.0 / 20.0) * h * h * coupling * d_2 + (1.0 / 840.0) * quarter * quarter * (d_2 * d_2));
+  return std::min(1.0, h * h * coupling * d_2 / 20.0 + quarter * quarter * (d_2 * d_2) / 840.0);
 }
 
 /// What slopes of smooth loads and laws that change towards the end make of y = pull u^3/6 at u behind a kink, d of the step before
@@ -212,21 +211,18 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end, const ExpandedLoa
                                                    bool by_nearness) const {
   static_assert(ExpandedLaws::kChanges == 3);
   const KinkMoments& kinks = loads_.kinks();
-  const double h = series_.step(), square = h * h;
-  // Divided out here, not in the loops over kinks: a division takes as long as all the rest.
-  const double angle = square / 360.0, speed = h / 60.0, angle_behind = square / 72576.0,
-               speed_behind = h / 8064.0, left_out = square / 120.0;
+  const double h = series_.step();
   Others sum;
   double most = -1.0;
   for (int i = 0; i < kinks.count(); ++i) {
     const double d = std::max(0.0, end - kinks.place(i)), fifth = d * d * d * d * d;
-    double of_slopes = angle * change.by_angle * d + speed * change.by_speed;
+    double of_slopes = h * h * change.by_angle * d / 360.0 + h * change.by_speed / 60.0;
     for (const ExpandedLaws::SlopeChange& law : laws_.slope_changes()) {
-      double of_law = angle * law.by_angle * d + speed * law.by_speed;
+      double of_law = h * h * law.by_angle * d / 360.0 + h * law.by_speed / 60.0;
       if (corrects_)
         of_law = 6.0 * of_law * of_law * d * d +
-                 d * d * d * (angle_behind * law.by_angle_behind * d + speed_behind * law.by_speed_behind);
-      of_law += left_out * law.left_out;
+                 d * d * d * (h * h * law.by_angle_behind * d / 72576.0 + h * law.by_speed_behind / 8064.0);
+      of_law += h * h * law.left_out / 120.0;
       if (by_nearness) of_law *= nearness(kinks.row(i), *law.term, d);
       of_slopes = std::max(of_slopes, of_law);
     }

@@ -25,8 +25,8 @@ constexpr double kJump = 1e-4;  // error allowed per undeclared discontinuity, r
 // How far behind a knot a step ends, relative to the step to it: behind the last node of Gauss's rule.
 constexpr double kBehindKnot = 1e-3;
 constexpr double kBeforeEnd = 0.98;  // last place in a step at which the nodes of Gauss's rule see a knot
-constexpr double kSteepest =
-    1.125;  // longest step of a motion that loads and smooth laws make faster, over that of the run
+// Longest step of a motion that loads and smooth laws make faster, over the run's longest.
+constexpr double kSteepest = 1.125;
 constexpr double kNearStart = 1e-8;  // a knot so close to the start does not end a step, relative to the step
 constexpr int kMostNewton = 10;
 constexpr double kAlong = 1e-9;  // error of points on the way of a swept step, relative to the motion
@@ -41,7 +41,7 @@ constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
 
 /// The range of a polynomial in [0, end], a step of a series; its turn as a part of that.
 StepMotion::Range range_of(const std::vector<double>& x, double end) {
-  constexpr int kParts = 2 * kLanes;  // omega h <= 0.32 between two places
+  constexpr int kParts = 2 * kLanes;  // omega h <= 0.35 between two places
   std::array<double, kParts> s, value, slope;
   for (int i = 0; i < kParts; ++i) s[idx(i)] = end * (i + 1) / kParts;
   polynomial_values(kParts, static_cast<int>(x.size()), x.data(), s.data(), value.data(), slope.data());

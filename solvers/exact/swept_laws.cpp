@@ -19,7 +19,7 @@ PolynomialDerivatives derivatives(std::span<const double> terms, double s) {
 double scaled_derivative(std::size_t d, const double* p, double y, double k, const double* x) {
   double sum = p[d] * y, ways = 1.0;
   for (std::size_t i = 1; i <= d; ++i) {
-    ways *= static_cast<double>(d - i + 1) * kInverse[i];
+    ways *= static_cast<double>(d - i + 1) / static_cast<double>(i);
     sum += ways * p[d - i] * k * x[i];
   }
   return sum;
@@ -115,7 +115,7 @@ void ExpandedLaws::add_changes(const TaylorSeries& series, int degree, double* m
       // int (e - u)^j/j! of the force, whose slopes are those at e less (e - u) times their first derivatives there, and so on.
       double force = 0.0, factor = 1.0;  // (-1)^q (j + q)!/(j! q!)
       for (std::size_t q = 1; q <= kChanges && j + q + 1 < last; ++q) {
-        factor *= -static_cast<double>(j + q) * kInverse[q];
+        factor *= -static_cast<double>(j + q) / static_cast<double>(q);
         force += factor * (law.slope[q] * y[j + q + 1] + law.by_phase[q] * turned[j + q + 1] +
                            per_time * law.by_speed[q] * y[j + q]);
       }
