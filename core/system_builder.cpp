@@ -29,6 +29,7 @@ System SystemBuilder::build() {
   describe_elements();
   find_nominal_motion();
   eliminate();
+  if (findings_.empty()) order_unknowns();
   check_inertias();
   set_initial();
   throw_if_findings();

@@ -33,6 +33,9 @@ class SystemBuilder {
   void find_nominal_motion();
   std::vector<int> floating_parts(const std::vector<double>& relative, Contact contact) const;
   void eliminate();
+  /// Numbers the unknowns along the lines of the train, where fewer couplings are then of unknowns that are not next to each other:
+  /// series and sweeps take those next to each other with the least work (solvers/series).
+  void order_unknowns();
   void check_inertias();
   void set_initial();
   // Matrices and terms over unknowns, of a model without findings.
@@ -50,6 +53,14 @@ class SystemBuilder {
   void keep(int element, const std::vector<int>& nodes, const Terms& terms);
   static void keep_entries(const std::vector<int>& nodes, const Eigen::MatrixXd& matrix, NodeMatrix& sum);
   const std::string& node_name(int node) const { return model_.node_names()[idx(node)]; }
+  /// Calls visit(i, j) for every two unknowns that something couples; more than once for some.
+  template <class Visit>
+  void for_each_coupling(const Visit& visit) const;
+  /// The same by unknown: those coupled to k at others[begin[k]] to others[begin[k + 1] - 1], with itself, in rising order.
+  struct Couplings {
+    std::vector<int> begin, others;
+  };
+  Couplings couplings() const;
   std::shared_ptr<const SparseMatrix> pattern() const;
   /// Calls visit(i, j, value) for every entry of M, C, K (0, 1, 2), Rayleigh damping included.
   template <class Visit>

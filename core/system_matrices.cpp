@@ -122,47 +122,98 @@ void SystemBuilder::for_each_entry(int matrix, const Visit& visit) const {
   }
 }
 
-std::shared_ptr<const SparseMatrix> SystemBuilder::pattern() const {
-  const int n = static_cast<int>(system_.unknown_node_.size());
-  const auto unknown = [this](int node) { return system_.node_map_[idx(node)].unknown; };
-  const auto for_each = [&](const auto& visit) {
-    for (int k = 0; k < n; ++k) visit(k, k);
-    for (int matrix = 0; matrix < 3; ++matrix)
-      for_each_entry(matrix, [&](int i, int j, double) {
-        if (unknown(i) >= 0 && unknown(j) >= 0 && unknown(i) != unknown(j)) visit(unknown(i), unknown(j));
-      });
-    for (const ScalarTerm& s : system_.scalars_)
-      for (const Entry& r : s.z)
-        for (const Entry& c : s.z)
-          if (r.index != c.index) visit(r.index, c.index);
-    for (const FrequencyTerm& f : system_.frequency_terms_)
-      for (const Entry& r : f.z)
-        for (const Entry& c : f.z)
-          if (r.index != c.index) visit(r.index, c.index);
-    for (const GeneralTerm& g : system_.generals_)
-      for (const int i : g.nodes)
-        for (const int j : g.nodes)
-          if (unknown(i) >= 0 && unknown(j) >= 0 && unknown(i) != unknown(j)) visit(unknown(i), unknown(j));
+template <class Visit>
+void SystemBuilder::for_each_coupling(const Visit& visit) const {
+  const auto couple = [&](int i, int j) {
+    const int row = system_.node_map_[idx(i)].unknown, column = system_.node_map_[idx(j)].unknown;
+    if (row >= 0 && column >= 0 && row != column) visit(row, column);
   };
-  std::vector<int> begin(idx(n + 1), 0);
-  for_each([&](int, int column) { ++begin[idx(column + 1)]; });
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<int> rows(idx(begin.back()));
-  std::vector<int> next(begin.begin(), begin.end() - 1);
-  for_each([&](int row, int column) { rows[idx(next[idx(column)]++)] = row; });
-  const auto p = std::make_shared<SparseMatrix>(n, n);
-  int entries = 0;
-  for (int j = 0; j < n; ++j) {
-    const auto first = rows.begin() + begin[idx(j)];
-    std::sort(first, rows.begin() + begin[idx(j + 1)]);
-    const auto last = std::unique(first, rows.begin() + begin[idx(j + 1)]);
-    std::copy(first, last, rows.begin() + entries);
-    p->outerIndexPtr()[j] = entries;
-    entries += static_cast<int>(last - first);
+  for (int matrix = 0; matrix < 3; ++matrix)
+    for_each_entry(matrix, [&](int i, int j, double) { couple(i, j); });
+  const auto all = [&](const auto& terms) {
+    for (const auto& term : terms)
+      for (const Entry& a : term.nodes)
+        for (const Entry& b : term.nodes) couple(a.index, b.index);
+  };
+  all(system_.scalars_);
+  all(system_.frequency_terms_);
+  for (const GeneralTerm& g : system_.generals_)
+    for (const int i : g.nodes)
+      for (const int j : g.nodes) couple(i, j);
+}
+
+SystemBuilder::Couplings SystemBuilder::couplings() const {
+  const auto n = system_.unknown_node_.size();
+  Couplings c{std::vector<int>(n + 1, 1), {}};  // each with itself
+  c.begin[0] = 0;
+  for_each_coupling([&](int, int column) { ++c.begin[idx(column + 1)]; });
+  std::partial_sum(c.begin.begin(), c.begin.end(), c.begin.begin());
+  c.others.resize(idx(c.begin.back()));
+  std::vector<int> next(c.begin.begin(), c.begin.end() - 1);
+  for (std::size_t k = 0; k < n; ++k) c.others[idx(next[k]++)] = static_cast<int>(k);
+  for_each_coupling([&](int row, int column) { c.others[idx(next[idx(column)]++)] = row; });
+  auto to = c.others.begin();
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto first = c.others.begin() + c.begin[k], last = c.others.begin() + c.begin[k + 1];
+    std::sort(first, last);
+    c.begin[k] = static_cast<int>(to - c.others.begin());
+    to = std::copy(first, std::unique(first, last), to);
   }
-  p->outerIndexPtr()[n] = entries;
+  c.begin[n] = static_cast<int>(to - c.others.begin());
+  c.others.erase(to, c.others.end());
+  return c;
+}
+
+void SystemBuilder::order_unknowns() {
+  bool in_order = true;
+  for_each_coupling([&](int i, int j) { in_order &= std::abs(i - j) == 1; });
+  if (in_order) return;
+  const Couplings c = couplings();
+  const auto n = system_.unknown_node_.size();
+  std::vector<int> order, number(n, -1);
+  // From each end along neighbours, next ones by their numbers first; then what is left, which lies in loops.
+  const auto walk = [&](int at) {
+    const auto start = static_cast<std::ptrdiff_t>(order.size());
+    int rises = 0;
+    for (;;) {
+      number[idx(at)] = 0;
+      order.push_back(at);
+      int next = -1;
+      for (int i = c.begin[idx(at)]; i < c.begin[idx(at + 1)]; ++i)
+        if (const int other = c.others[idx(i)];
+            number[idx(other)] < 0 && (next < 0 || std::abs(other - at) < std::abs(next - at)))
+          next = other;
+      if (next < 0) break;
+      rises += next > at ? 1 : -1;
+      at = next;
+    }
+    if (rises < 0) std::reverse(order.begin() + start, order.end());
+  };
+  for (const bool ends : {true, false})
+    for (std::size_t k = 0; k < n; ++k)
+      if (number[k] < 0 && (!ends || c.begin[k + 1] - c.begin[k] <= 2)) walk(static_cast<int>(k));
+  for (std::size_t i = 0; i < n; ++i) number[idx(order[i])] = static_cast<int>(i);
+  std::ptrdiff_t fewer = 0;
+  for (int k = 0; k < static_cast<int>(n); ++k)
+    for (int i = c.begin[idx(k)]; i < c.begin[idx(k + 1)]; ++i) {
+      const int other = c.others[idx(i)];
+      fewer +=
+          (std::abs(other - k) > 1 ? 1 : 0) - (std::abs(number[idx(other)] - number[idx(k)]) > 1 ? 1 : 0);
+    }
+  if (fewer <= 0) return;
+  for (NodeMap& map : system_.node_map_)
+    if (map.unknown >= 0) map.unknown = number[idx(map.unknown)];
+  for (int& k : order) k = system_.unknown_node_[idx(k)];
+  system_.unknown_node_ = std::move(order);
+}
+
+std::shared_ptr<const SparseMatrix> SystemBuilder::pattern() const {
+  const Couplings c = couplings();
+  const auto n = static_cast<int>(system_.unknown_node_.size()), entries = c.begin.back();
+  const auto p = std::make_shared<SparseMatrix>(n, n);
+  std::copy(c.begin.begin(), c.begin.end(), p->outerIndexPtr());
   p->resizeNonZeros(entries);
-  std::copy_n(rows.begin(), entries, p->innerIndexPtr());
+  std::copy_n(c.others.begin(), entries, p->innerIndexPtr());
   std::fill_n(p->valuePtr(), entries, 0.0);
   return p;
 }
