@@ -155,7 +155,7 @@ class Measurement {
   std::vector<Method> parameters(const std::string& name) const {
     std::vector<Method> all;
     if (name == kExact)
-      for (int digits = 3; digits <= 12; ++digits)
+      for (int digits = 2; digits <= 12; ++digits)
         all.push_back({.name = name, .tolerance = std::pow(10.0, -digits)});
     else if (const std::string scheme = controlled(name); !scheme.empty())
       for (int digits = 1; digits <= kMostDigits; ++digits)

@@ -23,8 +23,7 @@ namespace {
 
 constexpr double kWatchedAngle = 0.3;  // omega h between two points inside a step that observers are shown
 constexpr int kMaxCuts = 20;
-// A shorter step, relative to the largest one, is not shortened for what projection leaves.
-constexpr double kShortest = 1e-6;
+constexpr double kShortest = 1e-6;    // of the largest step: below it, what projection leaves is passed over
 constexpr double kKnotWidth = 4e-15;  // rounding of an angle that is looked up, relative to the time
 // Distances from a step's ends, relative to the step's length.
 constexpr double kNearEnd = 1e-3, kAtEnd = 1e-12, kAtStart = 1e-11;
@@ -103,6 +102,7 @@ class ExactRun final : public StepMotion {
   }
   std::optional<int> side(int law) const override { return laws_.side(law); }
   std::optional<Range> force_range(int law) override { return expansion_.force_range(laws_, law, step_.s); }
+  std::optional<Range> force_reach(int law) override { return expansion_.reach(laws_, law, now_, next_); }
   std::optional<Range> range(const std::vector<Entry>& z, const std::vector<Entry>& v) override {
     return expansion_.range(z, v, step_.s);
   }

@@ -226,6 +226,23 @@ std::optional<StepMotion::Range> StepExpansion::find_force_range(const LawSeries
   return range;
 }
 
+std::optional<StepMotion::Range> StepExpansion::find_force_reach(const LawSeries& laws, int law,
+                                                                 const EvaluatedState& from,
+                                                                 const EvaluatedState& to) {
+  const ScalarTerm& term = system_.scalars()[idx(law)];
+  const LawPiece* p = laws.force_piece(law);
+  if (p == nullptr || p->c != 0.0 || p->product != 0.0 || term.phase_node >= 0 || term.varies)
+    return std::nullopt;
+  const ScalarResponse &a = from.responses[idx(law)], &b = to.responses[idx(law)];
+  // Without a slope it is the piece's own, but for what rounding leaves at an end beside a change.
+  if (p->k == 0.0) return StepMotion::Range{std::min({p->y_0, a.y, b.y}), std::max({p->y_0, a.y, b.y})};
+  double beyond = 0.0;
+  for (const Entry& e : term.z) beyond += std::abs(p->k * e.coeff) * beyond_cubic_[idx(e.index)];
+  const Interval reach = cubic_reach(a.y, p->k * from.inputs[idx(law)].x_dot, b.y,
+                                     p->k * to.inputs[idx(law)].x_dot, to.state.t - from.state.t);
+  return StepMotion::Range{reach.low - beyond, reach.high + beyond};
+}
+
 StepMotion::Range StepExpansion::range(const std::vector<Entry>& z, const std::vector<Entry>& v, double s) {
   const auto terms = idx(series.degree()) + 1;
   const double per_time = 1.0 / series.step();

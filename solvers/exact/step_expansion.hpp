@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "solvers/exact/expanded_laws.hpp"
 #include "solvers/exact/friction_series.hpp"
@@ -32,8 +33,7 @@ class StepExpansion {
         friction(system),
         kinks(series, known, expanded),
         system_(system),
-        ranges_(system.scalars().size()),
-        ranges_known_(ranges_.size(), false) {
+        forces_(system.scalars().size()) {
     if (!known.expanded().loads().empty()) series.act_through(&known.expanded());
     if (!expanded.empty()) series.act_through(&expanded);
     if (!friction.empty()) series.act_through(&friction);  // which counts on all others
@@ -63,7 +63,7 @@ class StepExpansion {
 
   /// The laws' deflections and bounds along the step.
   void expand_laws(LawSeries& laws) {
-    std::fill(ranges_known_.begin(), ranges_known_.end(), false);
+    for (Force& force : forces_) force.range_known = force.reach_known = false;
     expanded.expand(series);
     laws.expand(series, known, offsets, sweeps_ ? known.row_sizes() : nullptr,
                 [this](int law, std::vector<double>& scale) {
@@ -87,12 +87,18 @@ class StepExpansion {
   const double* beyond_cubic(double s, bool jumps);
   /// StepMotion::force_range() up to s: of the series; what kinks add is within the error.
   std::optional<StepMotion::Range> force_range(const LawSeries& laws, int law, double s) {
-    const auto j = idx(law);
-    if (!ranges_known_[j]) ranges_[j] = find_force_range(laws, law, s);
-    ranges_known_[j] = true;
-    return ranges_[j];
+    Force& force = forces_[idx(law)];
+    if (!std::exchange(force.range_known, true)) force.range = find_force_range(laws, law, s);
+    return force.range;
   }
-  /// The same for StepMotion::range().
+  /// StepMotion::force_reach() from the step's start to where it ends, behind beyond_cubic() there.
+  std::optional<StepMotion::Range> reach(const LawSeries& laws, int law, const EvaluatedState& from,
+                                         const EvaluatedState& to) {
+    Force& force = forces_[idx(law)];
+    if (!std::exchange(force.reach_known, true)) force.reach = find_force_reach(laws, law, from, to);
+    return force.reach;
+  }
+  /// StepMotion::range() up to s.
   StepMotion::Range range(const std::vector<Entry>& z, const std::vector<Entry>& v, double s);
   /// First s in (0, end] at which the angle of a law passes one of its knots.
   std::optional<double> first_knot(double end);
@@ -131,6 +137,8 @@ class StepExpansion {
   };
   Inside left_by_kinks(std::span<const Entry> row) const;
   std::optional<StepMotion::Range> find_force_range(const LawSeries& laws, int law, double s);
+  std::optional<StepMotion::Range> find_force_reach(const LawSeries& laws, int law,
+                                                    const EvaluatedState& from, const EvaluatedState& to);
   bool find_kinks(double s, State& at);
   template <class Later>
   std::optional<double> settle(double s, const Later& later, double t, State& at);
@@ -138,8 +146,11 @@ class StepExpansion {
   const System& system_;
   LaneVector beyond_cubic_;
   std::vector<double> ranged_, scale_;  // series of what has a range
-  std::vector<std::optional<StepMotion::Range>> ranges_;
-  std::vector<bool> ranges_known_;
+  struct Force {                        // of a law in the step at hand
+    std::optional<StepMotion::Range> range, reach;
+    bool range_known = false, reach_known = false;
+  };
+  std::vector<Force> forces_;
   bool sweeps_ = false, refused_ = false, expanded_ = false;
   double share_ = 0.0;
   double knot_clearance_ = 0.0;

@@ -81,8 +81,6 @@ ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
     const auto gap = term.force->gap();
     if (!gap) continue;
     terms_.push_back(j);
-    rows_.push_back(term.z);
-    in_unknowns_.push_back(term.phase_node < 0 && !term.varies);
     gaps_.push_back(*gap);
     masses_.push_back(masses[j]);
     records_.emplace_back().element = system.element_instances()[idx(index(term.element))].name;
@@ -119,28 +117,23 @@ bool ContactStatistics::looks_inside(const EvaluatedState& from, const Evaluated
   for (std::size_t i = 0; inside_steps_ && i < terms_.size(); ++i) {
     largest_inside_[i].reset();
     turn_[i].reset();
-    looks |= may_rise_inside(i, from, to, beyond_cubic);
+    looks |= may_rise_inside(i, from, to);
   }
   return looks;
 }
 
 /// Whether the force may come further inside the step than it is known to.
-bool ContactStatistics::may_rise_inside(std::size_t i, const EvaluatedState& from, const EvaluatedState& to,
-                                        const double* beyond_cubic) {
+bool ContactStatistics::may_rise_inside(std::size_t i, const EvaluatedState& from, const EvaluatedState& to) {
   const std::size_t j = terms_[i];
   const int law = static_cast<int>(j);
   const ScalarResponse &a = from.responses[j], &b = to.responses[j];
   // A contact that this step begins has no largest force yet. Those at the step's ends are noted anyway.
   const bool begins = intervals_[i].side != motion_->side(law);
   const double largest = std::max({std::abs(a.y), std::abs(b.y), begins ? 0.0 : intervals_[i].largest});
-  double beyond = 0.0;
-  for (const Entry& e : rows_[i]) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
-  if (in_unknowns_[i]) {
-    const auto reach = force_reach(*motion_, law, from, to, beyond);
-    if (reach && std::max(-reach->low, reach->high) <= (1.0 + kLargestOfContact) * largest) {
-      largest_inside_[i] = 0.0;  // no more than at the step's ends, which are noted anyway, or before
-      return false;
-    }
+  const auto reach = motion_->force_reach(law);
+  if (reach && std::max(-reach->low, reach->high) <= (1.0 + kLargestOfContact) * largest) {
+    largest_inside_[i] = 0.0;  // no more than at the step's ends, which are noted anyway, or before
+    return false;
   }
   const auto range = motion_->force_range(law);
   if (!range) return true;

@@ -83,16 +83,13 @@ class ContactStatistics final : public Observer {
   const std::vector<ContactRecord>& records() const { return records_; }
 
  private:
-  bool may_rise_inside(std::size_t i, const EvaluatedState& from, const EvaluatedState& to,
-                       const double* beyond_cubic);
+  bool may_rise_inside(std::size_t i, const EvaluatedState& from, const EvaluatedState& to);
   void note_forces(std::size_t i, const Assembler& assembler, const EvaluatedState& from,
                    const EvaluatedState& to);
   bool inside_steps_ = true;
   StepMotion* motion_ = nullptr;
   std::unique_ptr<Peaks> forces_;  // of each law; null: not looked for inside steps
   std::vector<std::size_t> terms_;
-  std::vector<std::vector<Entry>> rows_;  // rows of the deflections over the unknowns
-  std::vector<bool> in_unknowns_;         // whether unknowns alone move the deflection
   std::vector<Gap> gaps_;
   std::vector<double> masses_;
   std::vector<ContactInterval> intervals_;

@@ -17,22 +17,6 @@ constexpr double kMostBulge = 0.15;  // > 4/27: cubic_reach()
 constexpr double kShort = 1e-6;      // length over the longest step: nothing moves in shorter ones
 }  // namespace
 
-std::optional<Interval> force_reach(const StepMotion& motion, int law, const EvaluatedState& from,
-                                    const EvaluatedState& to, double beyond) {
-  const auto side = motion.side(law);
-  if (!side) return std::nullopt;
-  const ScalarResponse &a = from.responses[idx(law)], &b = to.responses[idx(law)];
-  if (a.dy_dx_dot != 0.0 || b.dy_dx_dot != 0.0) return std::nullopt;
-  // Within the gap there is none, but for what rounding leaves at an end beside a change.
-  if (*side == 0) return Interval{std::min({0.0, a.y, b.y}), std::max({0.0, a.y, b.y})};
-  // An end on an edge of the gap has the slope of either side.
-  const double k = std::max(a.dy_dx, b.dy_dx);
-  if (std::min(a.dy_dx, b.dy_dx) < 0.0 || k == 0.0) return std::nullopt;  // 0: both have that within the gap
-  const Interval reach = cubic_reach(a.y, k * from.inputs[idx(law)].x_dot, b.y, k * to.inputs[idx(law)].x_dot,
-                                     to.state.t - from.state.t);
-  return Interval{reach.low - k * beyond, reach.high + k * beyond};
-}
-
 Peaks::Peaks(std::vector<Channel> channels, bool inside_steps)
     : channels_(std::move(channels)),
       peaks_(channels_.size()),
@@ -103,13 +87,12 @@ bool Peaks::watches_loads() const {
 
 void Peaks::find_rows(const System& system) {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
-    const int law = std::max(channels_[c].deflection_of(), channels_[c].force_of());
+    const int law = channels_[c].deflection_of();
     if (law < 0) continue;
     const ScalarTerm& term = system.scalars()[idx(law)];
     const bool moves_alone =
         term.phase_node >= 0 || term.varies;  // by more than known motions, of degree 2 in time
-    if (!moves_alone && (channels_[c].force_of() < 0 || !channels_[c].rate_needs_acceleration()))
-      watched_[c].row = term.z;
+    if (!moves_alone) watched_[c].row = term.z;
   }
 }
 
@@ -140,8 +123,7 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
     const ScalarInput &a = from.inputs[idx(law)], &b = to.inputs[idx(law)];
     reach = cubic_reach(a.x, a.x_dot, b.x, b.x_dot, h);
   } else if (const int law = channels_[c].force_of(); law >= 0) {
-    for (const Entry& e : w.row) beyond += std::abs(e.coeff) * beyond_cubic[e.index];
-    const auto force = w.row.empty() ? std::nullopt : force_reach(*motion_, law, from, to, beyond);
+    const auto force = motion_->force_reach(law);
     if (force && within_peaks(c, force->low, force->high, 0.0)) return false;
     const auto range = motion_->force_range(law);
     if (!range) return true;

@@ -15,11 +15,6 @@ class System;
 struct EvaluatedState;
 struct PeakSample;
 
-/// The interval that the force of a law (of System::scalars()) stays in over a step of exact propagation in which its
-/// deflection lies by at most `beyond` off the cubic through both ends; none where it is not known to be y_0 + k x.
-std::optional<Interval> force_reach(const StepMotion& motion, int law, const EvaluatedState& from,
-                                    const EvaluatedState& to, double beyond);
-
 class Peaks final : public Observer {
  public:
   /// inside_steps: true: extremes are found on the motion itself (observer.hpp), to rounding, inside steps as
@@ -70,7 +65,7 @@ class Peaks final : public Observer {
   struct Watched {
     int pair = -1;                 ///< its place among the pairs; -1: of another kind
     double last = 0.0;             ///< value at the last point, of another kind
-    std::vector<Entry> row;        ///< of the unknowns that a channel of a law follows
+    std::vector<Entry> row;        ///< of the unknowns that the channel of a deflection follows
     double low = 0.0, high = 0.0;  ///< a value between them is no peak, and next to none
   };
   void set_bounds(std::size_t c);

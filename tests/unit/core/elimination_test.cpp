@@ -28,7 +28,49 @@ Model train() {
   return m;
 }
 
+/// Inertias in this order, with shafts between pairs of them.
+System train_of(const std::vector<std::string>& nodes,
+                const std::vector<std::pair<std::string, std::string>>& shafts) {
+  Model m("train");
+  for (const std::string& node : nodes) m.add_node(node);
+  for (const std::string& node : nodes) m.add<Inertia>("J_" + node, {node}, {.inertia = 1.0});
+  for (const auto& [a, b] : shafts) m.add<ShaftSpring>(a + b, {a, b}, {.stiffness = 100.0});
+  m.set_initial("c", 0.25, -1.0);
+  return m.build();
+}
+std::string unknowns(const System& s) {
+  std::string names;
+  for (int k = 0; k < s.size(); ++k) names += s.unknown_name(k);
+  return names;
+}
+
 }  // namespace
+
+TEST_CASE("Unknowns are numbered along the lines of a train, whatever the order of its nodes") {
+  const std::vector<std::pair<std::string, std::string>> line{{"a", "b"}, {"b", "c"}, {"c", "d"}, {"d", "e"}};
+  CHECK(unknowns(train_of({"a", "b", "c", "d", "e"}, line)) == "abcde");
+  CHECK(unknowns(train_of({"b", "c", "d", "e", "a"}, line)) == "abcde");
+  CHECK(unknowns(train_of({"e", "d", "c", "b", "a"}, line)) == "edcba");
+  const System mixed = train_of({"d", "a", "e", "c", "b"}, line);
+  CHECK((unknowns(mixed) == "abcde" || unknowns(mixed) == "edcba"));
+  for (int row = 0; row < 5; ++row)
+    for (int column = 0; column < 5; ++column)
+      if (std::abs(row - column) > 1) CHECK(dense(mixed, mixed.stiffness_values())(row, column) == 0.0);
+  // What is given at a node stays with it.
+  const NodeMap& c = mixed.node_map(mixed.node("c"));
+  const State state = State::initial(mixed);
+  CHECK(state.z[c.unknown] == 0.25);
+  CHECK(state.v[c.unknown] == -1.0);
+  CHECK(state.z.sum() == 0.25);
+  // A branch behind its line stays there; a line that two branches interrupt is put together; so is a loop.
+  const std::vector<std::pair<std::string, std::string>> branched{
+      {"a", "b"}, {"b", "c"}, {"c", "d"}, {"b", "x"}, {"x", "y"}};
+  CHECK(unknowns(train_of({"a", "b", "c", "d", "x", "y"}, branched)) == "abcdxy");
+  CHECK(unknowns(train_of({"a", "x", "b", "y", "c", "d"}, branched)) == "abxycd");
+  const std::vector<std::pair<std::string, std::string>> loop{{"a", "b"}, {"b", "c"}, {"c", "d"}, {"d", "a"}};
+  CHECK(unknowns(train_of({"a", "c", "b", "d"}, loop)) == "abcd");
+  CHECK(unknowns(train_of({"a", "b", "c", "d"}, loop)) == "abcd");
+}
 
 TEST_CASE("A chain of two ideal gears") {
   const System s = train().build();
