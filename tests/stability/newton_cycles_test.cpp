@@ -66,12 +66,19 @@ class Problem {
     w_ = a.cwiseInverse().asDiagonal() * b_;
     contacts_ = ContactNewton(system_, b_.transpose() * w_, 1.0, 0.0);
   }
-  /// From displacements u; the solution comes back in u.
+  /// From displacements u of the masses; the solution comes back in u.
   NewtonResult sparse(bool line_search, Vector& u) {
     const Vector zero = Vector::Zero(system_.size());
-    Vector history;
-    return newton_.solve(assembler_, {.z_0 = &zero, .v_0 = &zero, .history = &history},
-                         {.max_iterations = 100, .line_search = line_search}, u, history);
+    Vector history, z(u.size());
+    const auto unknown = [this](Eigen::Index mass) {
+      return system_.node_map(static_cast<int>(mass)).unknown;
+    };
+    for (Eigen::Index i = 0; i < u.size(); ++i) z[unknown(i)] = u[i];
+    const NewtonResult result =
+        newton_.solve(assembler_, {.z_0 = &zero, .v_0 = &zero, .history = &history},
+                      {.max_iterations = 100, .line_search = line_search}, z, history);
+    for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = z[unknown(i)];
+    return result;
   }
   /// From the contact forces lambda; the displacements come back in u.
   NewtonResult on_contacts(bool line_search, Vector lambda, Vector& u) {
