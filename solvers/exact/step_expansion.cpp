@@ -114,10 +114,11 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
   bool settled = false;
   const bool projects = known.projects() || !smooth.empty();
   if (projects && h > limits.longest) return {limits.longest, true};
+  const double loosest = std::max(share, kLoosest);  // a short run's share of a large tolerance may be more
   // Each pass needs to be no better than the next one takes up of it.
   // Nor better than what the first one is about to change.
   double tolerance =
-      projects ? std::clamp(std::max(share / contraction_, kOfFirstChange * first_change_), share, kLoosest)
+      projects ? std::clamp(std::max(share / contraction_, kOfFirstChange * first_change_), share, loosest)
                : share;
   if (expanded_) tolerance = share;
   for (int pass = 0;; ++pass) {
@@ -142,7 +143,7 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     if (pass == 0) first_change_ = made.change;
     // The error of this pass comes back in the next one times the contraction factor.
     settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kPassesAgree);
-    tolerance = std::clamp(0.5 * share / contraction_, share, kLoosest);
+    tolerance = std::clamp(0.5 * share / contraction_, share, loosest);
   }
 }
 

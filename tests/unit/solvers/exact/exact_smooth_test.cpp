@@ -69,6 +69,22 @@ TEST_CASE("Exact propagation: a torque that is a function of time") {
   CHECK(state.z[0] == Approx(exact).margin(1e-13));
 }
 
+TEST_CASE("Exact propagation: a run of one step at the largest tolerance, all of which is that step's") {
+  // x'' + w^2 x = sin 3 t, as above.
+  Model m = unit_oscillator();
+  m.add<AppliedTorque>("drive", {"m"}, {.torque = [](double t) { return std::sin(3 * t); }});
+  const System system = m.build();
+  const double w = kTwoPi, t = 0.3, exact = (std::sin(3 * t) - 3 / w * std::sin(w * t)) / (w * w - 9);
+  for (const double tolerance : {ExactOptions::kTolerance.high, 2e-3, 1e-3}) {
+    State state = State::initial(system);
+    const RunSummary run = propagate(system, {.tolerance = tolerance, .t_end = t}, state);
+    INFO(run.brief_report());
+    CHECK(run.ok());
+    CHECK(run.steps <= 3);
+    CHECK(std::abs(state.z[0] - exact) < tolerance * exact);
+  }
+}
+
 TEST_CASE("Exact propagation: a torque that is a function of speed") {
   // J w' = -c w^2: w = w_0/(1 + c w_0 t/J).
   Model m("fan");
