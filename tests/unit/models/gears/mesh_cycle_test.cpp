@@ -199,7 +199,7 @@ TEST_CASE("Stiffness follows the load as the contacts do", "[gears]") {
   CHECK(off(MeshCycle(GearPair(gear_pairs::t2()), options).figures().mean / kUnit, 18.517) < 0.02);
 }
 
-TEST_CASE("Mesh stiffness converges with finer meshes", "[gears]") {
+TEST_CASE("Mesh stiffness converges with finer meshes", "[gears][once]") {
   // Three meshes of the independent program give R62 14.153, 14.157, 14.161 for one pair and 20.165, 20.168, 20.168 for two;
   // T2 13.272, 13.272, 13.273 for one. With all teeth in place of five, drev settles 0.2 % higher.
   const auto values = [](const GearGeometry& geometry, int level) {

@@ -72,7 +72,7 @@ System engine_with_camshaft(unsigned seed) {
 }  // namespace
 
 TEST_CASE("Smooth loads as series, kinks and a mesh with damping together: the motion of Runge-Kutta",
-          "[exact]") {
+          "[exact][once]") {
   constexpr double kEnd = 0.02;
   long changes = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {

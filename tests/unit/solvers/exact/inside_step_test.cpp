@@ -290,8 +290,8 @@ class Shown final : public Observer {
 
 }  // namespace
 
-TEST_CASE(
-    "Steps are shown whole where no peak passes inside: the same peaks and contacts from fewer points") {
+TEST_CASE("Steps are shown whole where no peak passes inside: the same peaks and contacts from fewer points",
+          "[once]") {
   struct Watched {
     std::vector<Peak> peaks;
     std::vector<ContactRecord> contacts;

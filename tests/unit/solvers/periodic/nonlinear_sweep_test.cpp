@@ -449,7 +449,7 @@ TEST_CASE("The cycle of a train of several shafts is found by the turns of each"
 }
 
 TEST_CASE("Two meshes of one train: their forces satisfy the equation of motion over the cycle",
-          "[nonlinear_sweep]") {
+          "[nonlinear_sweep][once]") {
   // Pinion held - mesh 1 - wheel - mesh 2 - second wheel, both with backlash and a transmission error of their own.
   Model m("two meshes");
   for (const char* node : {"pinion", "wheel", "second"}) m.add_node(node);
