@@ -232,7 +232,9 @@ std::optional<StepMotion::Range> StepExpansion::find_force_reach(const LawSeries
                                                                  const EvaluatedState& to) {
   const ScalarTerm& term = system_.scalars()[idx(law)];
   const LawPiece* p = laws.force_piece(law);
-  if (p == nullptr || p->c != 0.0 || p->product != 0.0 || term.phase_node >= 0 || term.varies)
+  // A law without a gap may jump at a change, where the force at that end of the step is of either side.
+  if (!laws.side(law) || p == nullptr || p->c != 0.0 || p->product != 0.0 || term.phase_node >= 0 ||
+      term.varies)
     return std::nullopt;
   const ScalarResponse &a = from.responses[idx(law)], &b = to.responses[idx(law)];
   // Without a slope it is the piece's own, but for what rounding leaves at an end beside a change.
