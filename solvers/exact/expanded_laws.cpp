@@ -147,6 +147,7 @@ void ExpandedLaws::add_to(TaylorSeries& series, const LawSeries& pieces, const L
     law.terms_to = law.scale_to = -1;
     law.active = !linear && (p.y_0 != 0.0 || p.k != 0.0 || p.c != 0.0 || p.product != 0.0);
     law.works = !linear && (law.active || p.elastic_0 != 0.0 || p.elastic_k != 0.0);
+    law.turns = law.works && law.scaled != nullptr;
     sweeps_ = sweeps_ && (linear || term.u.empty() || !system_.any_prescribed_moves());
     law.origin = p.elastic_k != 0.0 ? -p.elastic_0 / p.elastic_k : 0.0;
     law.k = p.k;
@@ -309,7 +310,7 @@ void ExpandedLaws::expand(const TaylorSeries& series) {
   for (Law& law : laws_) {
     if (law.works)
       complete(law, series);
-    else if (law.scaled != nullptr)
+    else if (law.turns)
       complete_terms(law, series);
   }
 }
@@ -317,7 +318,7 @@ void ExpandedLaws::expand(const TaylorSeries& series) {
 bool ExpandedLaws::turns_back(const TaylorSeries& series) {
   bool any = false;
   for (Law& law : laws_) {
-    if (law.scaled == nullptr || law.turned_at == t_) continue;
+    if (!law.turns || law.turned_at == t_) continue;
     const double near = kOnLawKnot * std::max(1.0, std::abs(law.angle));
     const double to_knot = law.direction > 0.0 ? law.angle - law.stretch.low : law.stretch.high - law.angle;
     if (!(to_knot < near)) continue;
@@ -352,7 +353,7 @@ bool ExpandedLaws::scale_of(int index, const TaylorSeries& series, std::vector<d
 ExpandedLaws::Turning ExpandedLaws::turning(int index) {
   const Law* law = find(index);
   if (law == nullptr || law->scaled == nullptr) return {};
-  Turning turning{std::abs(law->stretch.slope), law->phase_row};
+  Turning turning{std::abs(law->stretch.slope), law->stretch.orders.empty(), law->phase_row};
   for (const ScaleOrder& o : law->stretch.orders)
     turning.steepest += o.order * (std::abs(o.cosine) + std::abs(o.sine));
   return turning;
@@ -361,7 +362,7 @@ ExpandedLaws::Turning ExpandedLaws::turning(int index) {
 std::optional<double> ExpandedLaws::first_knot(const TaylorSeries& series, double end) {
   std::optional<double> first;
   for (Law& law : laws_) {
-    if (law.scaled == nullptr) continue;
+    if (!law.turns) continue;
     if (!std::isfinite(law.stretch.low) && !std::isfinite(law.stretch.high)) continue;
     const double near = kOnLawKnot * std::max(1.0, std::abs(law.angle));
     const auto terms = idx(series.degree() + 1);

@@ -75,9 +75,11 @@ class ExpandedLaws final : public TermForces {
   void expand(const TaylorSeries& series);
   /// Series of how the pieces of the law are scaled along the path; false: it is none of these.
   bool scale_of(int law, const TaylorSeries& series, std::vector<double>& scale);
-  /// Bound of |dr/dtheta| of a law that has a scale, on the stretch of the step [1/rad]; and the row that turns theta.
+  /// Bound of |dr/dtheta| of a law that has a scale, on the stretch of the step [1/rad]; whether r is straight there; and the row that
+  /// turns theta.
   struct Turning {
     double steepest = 0.0;
+    bool straight = true;
     std::span<const Entry> row = {};
   };
   Turning turning(int law);
@@ -109,6 +111,7 @@ class ExpandedLaws final : public TermForces {
     // The step's piece about `origin`, where its elastic force is zero. active: it acts through terms; works: its work is found at
     // nodes, that of a flank that let go, too, which has no force but loses energy.
     bool active = false, works = false;
+    bool turns = false;  // it acts and follows an angle: over knots of that the step may not go
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
     double angle = 0.0, deflection = 0.0, stored = 0.0;  // at the step's start, the deflection from `origin`
     bool is_spring = false;                              // over the whole step: it is in the series' matrices

@@ -233,17 +233,38 @@ std::optional<StepMotion::Range> StepExpansion::find_force_reach(const LawSeries
   const ScalarTerm& term = system_.scalars()[idx(law)];
   const LawPiece* p = laws.force_piece(law);
   // A law without a gap may jump at a change, where the force at that end of the step is of either side.
-  if (!laws.side(law) || p == nullptr || p->c != 0.0 || p->product != 0.0 || term.phase_node >= 0 ||
-      term.varies)
-    return std::nullopt;
-  const ScalarResponse &a = from.responses[idx(law)], &b = to.responses[idx(law)];
+  if (!laws.side(law) || p == nullptr || p->c != 0.0 || p->product != 0.0) return std::nullopt;
+  const double y_a = from.responses[idx(law)].y, y_b = to.responses[idx(law)].y;
   // Without a slope it is the piece's own, but for what rounding leaves at an end beside a change.
-  if (p->k == 0.0) return StepMotion::Range{std::min({p->y_0, a.y, b.y}), std::max({p->y_0, a.y, b.y})};
+  if (p->k == 0.0 && (p->y_0 == 0.0 || !term.varies))
+    return StepMotion::Range{std::min({p->y_0, y_a, y_b}), std::max({p->y_0, y_a, y_b})};
+  if (term.phase_node >= 0 && term.force->has_offset()) return std::nullopt;  // nobody knows how far it bends
+  const ScalarInput &a = from.inputs[idx(law)], &b = to.inputs[idx(law)];
   double beyond = 0.0;
   for (const Entry& e : term.z) beyond += std::abs(p->k * e.coeff) * beyond_cubic_[idx(e.index)];
-  const Interval reach = cubic_reach(a.y, p->k * from.inputs[idx(law)].x_dot, b.y,
-                                     p->k * to.inputs[idx(law)].x_dot, to.state.t - from.state.t);
-  return StepMotion::Range{reach.low - beyond, reach.high + beyond};
+  const auto elastic = [&](const ScalarInput& at, double y) {
+    return term.varies ? p->y_0 + p->k * at.x : y;
+  };
+  const Interval e = cubic_reach(elastic(a, y_a), p->k * a.x_dot, elastic(b, y_b), p->k * b.x_dot,
+                                 to.state.t - from.state.t);
+  StepMotion::Range reach{e.low - beyond, e.high + beyond};
+  if (!term.varies) return reach;
+  const ExpandedLaws::Turning turning = expanded.turning(law);
+  // Orders bend so much that the range would be asked for in any case.
+  if (!turning.straight || !expanded.scale_of(law, series, scale_)) return std::nullopt;
+  // The scale lies within sum |r_k| max(s - s^k) of its chord.
+  double bends = turning.steepest * left_by_kinks(turning.row).value, end = scale_[0];
+  for (std::size_t k = 1; k < scale_.size(); ++k) {
+    end += scale_[k];
+    bends += std::abs(scale_[k]) * std::max(0.0, 1.0 - 1.5 * kInverse[k]);
+  }
+  reach = {std::min(y_a, y_b), std::max(y_a, y_b)};
+  for (const double r : {std::min(scale_[0], end) - bends, std::max(scale_[0], end) + bends})
+    for (const double y : {r * (e.low - beyond), r * (e.high + beyond)}) {
+      reach.low = std::min(reach.low, y);
+      reach.high = std::max(reach.high, y);
+    }
+  return reach;
 }
 
 StepMotion::Range StepExpansion::range(const std::vector<Entry>& z, const std::vector<Entry>& v, double s) {

@@ -128,7 +128,7 @@ void ExpandedLaws::add_changes(const TaylorSeries& series, int degree, double* m
 bool ExpandedLaws::passes_knot(const TaylorSeries& series, double s) {
   const auto terms = idx(series.degree() + 1);
   for (const Law& law : laws_) {
-    if (law.scaled == nullptr) continue;
+    if (!law.turns) continue;
     if (!std::isfinite(law.stretch.low) && !std::isfinite(law.stretch.high)) continue;
     const double along_series = polynomial_value(std::span(law.theta).first(terms), s);
     const double angle = along_series + value_along(law.phase_row, series.swept(0));

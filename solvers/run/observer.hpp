@@ -37,8 +37,8 @@ class StepMotion {
   };
   /// Of the force of a law (of System::scalars()) [N or N m].
   virtual std::optional<Range> force_range(int /*law*/) { return std::nullopt; }
-  /// At less cost, an interval that this force stays in, with no more told of it; none where it is not known to be y_0 + k x of a
-  /// deflection x that unknowns alone move, or the law has no gap.
+  /// At less cost, an interval that this force stays in, with no more told of it; none where it is not known to be r (y_0 + k x) of a
+  /// deflection x that unknowns alone move, with r constant or straight along an angle, or the law has no gap.
   virtual std::optional<Range> force_reach(int /*law*/) { return std::nullopt; }
   /// Of a sum over unknowns, z [rad or m], and over their rates, v [rad/s or m/s].
   virtual std::optional<Range> range(const std::vector<Entry>& /*z*/, const std::vector<Entry>& /*v*/) {

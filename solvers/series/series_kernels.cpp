@@ -157,13 +157,22 @@ constexpr auto kFallingFactorial = [] {
 struct Derivatives {
   template <class L>
   [[gnu::always_inline]] static void run(int terms, const double* c, double x, PolynomialDerivatives* out) {
-    L value{}, bound{}, factor;
-    double power = 1.0;
-    for (int k = 0; k < terms; ++k, power *= x) {
+    L value{}, bound{}, value_odd{}, bound_odd{};  // two sums each, that do not wait for each other
+    const auto add = [&](int k, double power, L& to, L& to_bound) __attribute__((always_inline)) {
+      L factor;
       load(kFallingFactorial[idx(k)].data(), factor);
-      value += (c[k] * power) * factor;
-      bound += __builtin_fabs(c[k]) * factor;
+      to += (c[k] * power) * factor;
+      to_bound += __builtin_fabs(c[k]) * factor;
+    };
+    double power = 1.0;
+    int k = 0;
+    for (; k + 1 < terms; k += 2, power *= x * x) {
+      add(k, power, value, bound);
+      add(k + 1, power * x, value_odd, bound_odd);
     }
+    if (k < terms) add(k, power, value, bound);
+    value += value_odd;
+    bound += bound_odd;
     store(value, out->value.data());
     store(bound, out->bound.data());
   }
