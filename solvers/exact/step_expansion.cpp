@@ -39,30 +39,64 @@ constexpr double kOfScale = 1e-9, kMostDropped = TaylorSeries::kMaxDegree;
 // twice the most.
 constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
 
-/// The range of a polynomial in [0, end], a step of a series; its turn as a part of that.
-StepMotion::Range range_of(const std::vector<double>& x, double end) {
-  constexpr int kParts = 2 * kLanes;  // omega h <= 0.35 between two places
-  std::array<double, kParts> s, value, slope;
-  for (int i = 0; i < kParts; ++i) s[idx(i)] = end * (i + 1) / kParts;
-  polynomial_values(kParts, static_cast<int>(x.size()), x.data(), s.data(), value.data(), slope.data());
-  StepMotion::Range range{x[0], x[0]};
+using Terms = std::vector<double>;
+
+double bend_of(const Terms& x, double s) {
+  double bend = 0.0;
+  for (std::size_t k = x.size(); k-- > 2;) bend = bend * s + static_cast<double>(k * (k - 1)) * x[k];
+  return bend;
+}
+
+/// The range of scale x + more in [0, end], a step of series; its turn as a part of that. Without terms scale is 1, more is 0.
+StepMotion::Range range_of(const Terms& x, const Terms& scale, const Terms& more, double end) {
+  constexpr std::size_t kParts = 2 * kLanes;  // omega h <= 0.35 between two places
+  using Values = std::array<double, kParts + 1>;
+  Values s, value, slope;
+  for (std::size_t i = 0; i <= kParts; ++i) s[i] = end * static_cast<double>(i) / kParts;
+  const auto evaluate = [&s](const Terms& of, Values& y, Values& rate) {
+    y[0] = of[0];
+    rate[0] = of.size() > 1 ? of[1] : 0.0;
+    polynomial_values(kParts, static_cast<int>(of.size()), of.data(), &s[1], &y[1], &rate[1]);
+  };
+  evaluate(x, value, slope);
+  Values r, r_slope;
+  if (!scale.empty()) {
+    evaluate(scale, r, r_slope);
+    for (std::size_t i = 0; i <= kParts; ++i) {
+      slope[i] = r[i] * slope[i] + r_slope[i] * value[i];
+      value[i] *= r[i];
+    }
+  }
+  if (!more.empty()) {
+    evaluate(more, r, r_slope);
+    for (std::size_t i = 0; i <= kParts; ++i) {
+      value[i] += r[i];
+      slope[i] += r_slope[i];
+    }
+  }
+  const auto scale_at = [&scale](double at) { return scale.empty() ? 1.0 : polynomial_value(scale, at); };
+  StepMotion::Range range{value[0], value[0]};
   const auto take = [&range](double y) {
     range.low = std::min(range.low, y);
     range.high = std::max(range.high, y);
   };
-  double from = x[0], rate = x.size() > 1 ? x[1] : 0.0;
-  for (std::size_t i = 0; i < kParts; from = value[i], rate = slope[i], ++i) {
+  for (std::size_t i = 1; i <= kParts; ++i) {
     take(value[i]);
-    const auto inside = cubic_peak(from, rate, value[i], slope[i], end / kParts);
+    const auto inside = cubic_peak(value[i - 1], slope[i - 1], value[i], slope[i], end / kParts);
     if (!inside) continue;
-    const double turn = s[i] - end / kParts * (1.0 - inside->s);
-    take(polynomial_value(x, turn));
+    const double turn = s[i - 1] + end / kParts * inside->s;
+    take(scale_at(turn) * polynomial_value(x, turn) + (more.empty() ? 0.0 : polynomial_value(more, turn)));
     ++range.turns;
     range.turn = turn / end;
   }
-  if (range.turns > 0)
-    for (std::size_t k = x.size(); k-- > 2;)
-      range.bend = range.bend * end * range.turn + end * end * static_cast<double>(k * (k - 1)) * x[k];
+  if (range.turns > 0) {
+    const double at = end * range.turn;
+    range.bend = scale_at(at) * bend_of(x, at) + bend_of(more, at);
+    if (!scale.empty())
+      range.bend += 2.0 * polynomial_slope(scale, at) * polynomial_slope(x, at) +
+                    bend_of(scale, at) * polynomial_value(x, at);
+    range.bend *= end * end;
+  }
   return range;
 }
 
@@ -192,7 +226,8 @@ std::optional<StepMotion::Range> StepExpansion::find_force_range(const LawSeries
   if (p == nullptr) return std::nullopt;
   const std::vector<double>& x = laws.deflection(law);
   const double per_time = 1.0 / series.step();
-  // r (y_0 + k x) + (c + g x) x', as a series; sizes: bounds of r, x and x' by s.
+  // r (y_0 + k x) + (c + g x) x', as series; sizes: bounds of r, x and x' by s.
+  scale_.clear();
   ranged_.resize(x.size());
   for (std::size_t k = 0; k < x.size(); ++k) ranged_[k] = p->k * x[k];
   ranged_[0] += p->y_0;
@@ -200,24 +235,24 @@ std::optional<StepMotion::Range> StepExpansion::find_force_range(const LawSeries
   for (const double term : ranged_) elastic += std::abs(term);
   if (elastic != 0.0 && expanded.scale_of(law, series, scale_)) {
     while (scale_.size() > 1 && std::abs(scale_.back()) <= kOfScale * std::abs(scale_[0])) scale_.pop_back();
-    multiply_polynomial(scale_, ranged_);
     of_r = 0.0;
     for (const double term : scale_) of_r += std::abs(term);
   }
+  Terms damped;
   if (p->c != 0.0 || p->product != 0.0) {
     for (std::size_t k = 0; k < x.size(); ++k) {
       of_x += std::abs(x[k]);
       of_rate += static_cast<double>(k) * std::abs(x[k]);
     }
-    std::vector<double> damped(x.begin(), x.end());
+    damped.assign(x.begin(), x.end());
     for (double& term : damped) term *= 0.5 * p->product;
     damped[0] += p->c;
     multiply_polynomial(x, damped);  // its rate is (c + g x) x'
-    ranged_.resize(std::max(ranged_.size(), damped.size() - 1), 0.0);
     for (std::size_t k = 1; k < damped.size(); ++k)
-      ranged_[k - 1] += static_cast<double>(k) * per_time * damped[k];
+      damped[k - 1] = static_cast<double>(k) * per_time * damped[k];
+    if (damped.size() > 1) damped.pop_back();
   }
-  StepMotion::Range range = range_of(ranged_, s);
+  StepMotion::Range range = range_of(ranged_, scale_, damped, s);
   const Inside left = left_by_kinks(system_.scalars()[idx(law)].z);
   const ExpandedLaws::Turning turning = expanded.turning(law);
   const double damping = std::abs(p->c) + std::abs(p->product) * (of_x + left.value);
@@ -278,7 +313,7 @@ StepMotion::Range StepExpansion::range(const std::vector<Entry>& z, const std::v
         ranged_[k - 1] +=
             static_cast<double>(k) * per_time * e.coeff * series.coefficient(static_cast<int>(k), e.index);
   }
-  StepMotion::Range range = range_of(ranged_, s);
+  StepMotion::Range range = range_of(ranged_, {}, {}, s);
   range.error = left_by_kinks(z).value + per_time * left_by_kinks(v).rate;
   return range;
 }
