@@ -8,8 +8,7 @@
 #
 # Two things save time, and leave nothing out:
 #   - a header that is the first include of another one is compiled with that, as the first thing of a file
-#   - headers that include large ones of Eigen or nlohmann, directly or through others, start from just those,
-#     precompiled
+#   - headers that include large ones, directly or through others, start from just those, precompiled
 set -euo pipefail
 root=$1 compiler=$2
 shift 2
@@ -22,7 +21,7 @@ fi
 [ -n "$headers" ] || { echo "No header found below $root: nothing was checked."; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-large="Eigen/Core Eigen/SparseCore Eigen/Dense nlohmann/json.hpp"
+large="Eigen/Core Eigen/SparseCore Eigen/Dense nlohmann/json.hpp drev/core/system.hpp"
 
 # plan: a line a header that is to be compiled, with the large headers that it comes to, "_" for "/".
 # shellcheck disable=SC2086
@@ -32,11 +31,18 @@ awk -v large="$large" '
     seen[header, mark] = 1
     n = split(includes[header], list, " ")
     for (i = 1; i <= n; ++i) {
-      if (list[i] in is_large) heavy[mark, list[i]] = 1
-      else if (list[i] in includes) reach(list[i], mark)
+      if (list[i] in is_large) heavy[mark, is_large[list[i]]] = 1
+      if (list[i] in includes) reach(list[i], mark)
     }
   }
-  BEGIN { count = split(large, all, " "); for (i = 1; i <= count; ++i) is_large[all[i]] = 1 }
+  BEGIN {
+    count = split(large, all, " ")
+    for (i = 1; i <= count; ++i) {
+      name = all[i]
+      sub(/^drev\//, "", name)
+      is_large[name] = all[i]
+    }
+  }
   FNR == 1 { includes[FILENAME] = ""; first[FILENAME] = ""; clean = 1 }
   /^[ \t]*#[ \t]*include/ {
     name = $0
@@ -64,20 +70,22 @@ awk -v large="$large" '
 # A set of large headers is precompiled where several come to it.
 printf '"%s"\n' "$@" -std=c++20 -Wall -Wextra -Wno-unused-function -Werror >"$work/options"
 cut -d ' ' -f 2 "$work/plan" | sort | uniq -c | while read -r users class; do
-  if [ "$class" = - ] || [ "$users" -lt 4 ]; then continue; fi
+  if [ "$class" = - ] || [ "$users" -lt 5 ]; then continue; fi
   for header in $large; do
     case "+$class" in *"+${header//\//_}+"*) echo "#include <$header>" ;; esac
   done >"$work/$class.hpp"
-  "$compiler" "@$work/options" -x c++-header "$work/$class.hpp" -o "$work/$class.hpp.gch"
 done
 
+jobs=$(env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)
+precompile() { "$compiler" "@$work/options" -x c++-header "$1" -o "$1.gch"; }
 compile() {
   local start=()
   if [ -f "$work/$2.hpp" ]; then start=(-include "$work/$2.hpp"); fi
   echo "#include \"$1\"" | "$compiler" "@$work/options" "${start[@]}" -fsyntax-only -I. -x c++ - ||
     { echo "FAILED: $1 does not compile by itself" >&2; return 1; }
 }
-export -f compile
+export -f compile precompile
 export work compiler
-xargs -P "$(env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)" -L 1 bash -c 'compile "$@"' bash <"$work/plan" || exit 1
+find "$work" -name "*.hpp" -print0 | xargs -0 -r -P "$jobs" -n 1 bash -c 'precompile "$@"' bash || exit 1
+xargs -P "$jobs" -L 1 bash -c 'compile "$@"' bash <"$work/plan" || exit 1
 echo "$(wc -w <<<"$headers") headers compile by themselves."
