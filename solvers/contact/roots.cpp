@@ -86,6 +86,12 @@ class Search {
 
 }  // namespace
 
+double polynomial_curvature(std::span<const double> g, double s) {
+  double sum = 0.0;
+  for (std::size_t k = g.size(); k-- > 2;) sum = sum * s + static_cast<double>(k * (k - 1)) * g[k];
+  return sum;
+}
+
 void multiply_polynomial(std::span<const double> by, std::vector<double>& g) {
   std::vector<double> product(by.size() + g.size() - 1, 0.0);
   for (std::size_t i = 0; i < by.size(); ++i)

@@ -18,8 +18,9 @@ namespace drev {
 
 /// g(s) by Horner's rule.
 double polynomial_value(std::span<const double> g, double s);
-/// g'(s).
+/// g'(s) and g''(s).
 double polynomial_slope(std::span<const double> g, double s);
+double polynomial_curvature(std::span<const double> g, double s);
 /// g times another one.
 void multiply_polynomial(std::span<const double> by, std::vector<double>& g);
 

@@ -111,7 +111,8 @@ class ExpandedLaws final : public TermForces {
     // The step's piece about `origin`, where its elastic force is zero. active: it acts through terms; works: its work is found at
     // nodes, that of a flank that let go, too, which has no force but loses energy.
     bool active = false, works = false;
-    bool turns = false;  // it acts and follows an angle: over knots of that the step may not go
+    // It acts, in the matrices too, and follows an angle, over whose knots the step may not go.
+    bool turns = false;
     double origin = 0.0, y_0 = 0.0, k = 0.0, c = 0.0, g = 0.0, elastic_0 = 0.0, elastic_k = 0.0;
     double angle = 0.0, deflection = 0.0, stored = 0.0;  // at the step's start, the deflection from `origin`
     bool is_spring = false;                              // over the whole step: it is in the series' matrices

@@ -212,21 +212,21 @@ KinkResponse::Others KinkResponse::error_of_slopes(double end, const ExpandedLoa
   static_assert(ExpandedLaws::kChanges == 3);
   const KinkMoments& kinks = loads_.kinks();
   const double h = series_.step(), square = h * h;
-  const auto first_order = [&](const ExpandedLaws::SlopeChange& of, double d) {
-    return square * of.by_angle * d * (1.0 / 360.0) + h * of.by_speed * (1.0 / 60.0);
+  const auto first_order = [&](double by_angle, double by_speed, double d) {
+    return square * by_angle * d * (1.0 / 360.0) + h * by_speed * (1.0 / 60.0);
   };
   Others sum;
   double most = -1.0;
   for (int i = 0; i < kinks.count(); ++i) {
     const double d = std::max(0.0, end - kinks.place(i)), d_2 = d * d;
-    double of_slopes =
-        first_order({.term = nullptr, .by_angle = change.by_angle, .by_speed = change.by_speed}, d);
+    double of_slopes = first_order(change.by_angle, change.by_speed, d);
     for (const ExpandedLaws::SlopeChange& law : laws_.slope_changes()) {
-      double of_law = first_order(law, d);
-      if (corrects_)
-        of_law = 6.0 * of_law * of_law * d_2 + d_2 * d *
-                                                   (square * law.by_angle_behind * d * (1.0 / 72576.0) +
-                                                    h * law.by_speed_behind * (1.0 / 8064.0));
+      double of_law = first_order(law.by_angle, law.by_speed, d);
+      if (corrects_) {
+        const double behind =
+            square * law.by_angle_behind * d * (1.0 / 72576.0) + h * law.by_speed_behind * (1.0 / 8064.0);
+        of_law = 6.0 * of_law * of_law * d_2 + d_2 * d * behind;
+      }
       of_law += square * law.left_out * (1.0 / 120.0);
       if (by_nearness) of_law *= nearness(kinks.row(i), *law.term, d);
       of_slopes = std::max(of_slopes, of_law);

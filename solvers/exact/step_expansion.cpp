@@ -41,12 +41,6 @@ constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
 
 using Terms = std::vector<double>;
 
-double bend_of(const Terms& x, double s) {
-  double bend = 0.0;
-  for (std::size_t k = x.size(); k-- > 2;) bend = bend * s + static_cast<double>(k * (k - 1)) * x[k];
-  return bend;
-}
-
 /// The range of scale x + more in [0, end], a step of series; its turn as a part of that. Without terms scale is 1, more is 0.
 StepMotion::Range range_of(const Terms& x, const Terms& scale, const Terms& more, double end) {
   constexpr std::size_t kParts = 2 * kLanes;  // omega h <= 0.35 between two places
@@ -91,10 +85,10 @@ StepMotion::Range range_of(const Terms& x, const Terms& scale, const Terms& more
   }
   if (range.turns > 0) {
     const double at = end * range.turn;
-    range.bend = scale_at(at) * bend_of(x, at) + bend_of(more, at);
+    range.bend = scale_at(at) * polynomial_curvature(x, at) + polynomial_curvature(more, at);
     if (!scale.empty())
       range.bend += 2.0 * polynomial_slope(scale, at) * polynomial_slope(x, at) +
-                    bend_of(scale, at) * polynomial_value(x, at);
+                    polynomial_curvature(scale, at) * polynomial_value(x, at);
     range.bend *= end * end;
   }
   return range;

@@ -29,6 +29,17 @@ std::vector<double> with_roots(const std::vector<double>& roots, double scale = 
 
 }  // namespace
 
+TEST_CASE("A polynomial, its slope and its curvature") {
+  // 3 - 2 s + 5 s^3 - s^4.
+  const std::vector<double> g{3.0, -2.0, 0.0, 5.0, -1.0};
+  for (const double s : {0.0, 0.3, 1.0, 1.7}) {
+    CHECK(polynomial_value(g, s) == Approx(3.0 - 2.0 * s + 5.0 * s * s * s - s * s * s * s).epsilon(1e-14));
+    CHECK(polynomial_slope(g, s) == Approx(-2.0 + 15.0 * s * s - 4.0 * s * s * s).epsilon(1e-14));
+    CHECK(polynomial_curvature(g, s) == Approx(30.0 * s - 12.0 * s * s).epsilon(1e-14));
+  }
+  CHECK(polynomial_curvature(std::vector<double>{3.0, -2.0}, 0.3) == 0.0);
+}
+
 TEST_CASE("First crossing: a single root, wherever it is") {
   for (const double root : {1e-12, 1e-3, 0.25, 0.5, 0.7, 0.999, 1.0 - 1e-12}) {
     const auto s = first_crossing(with_roots({root, 3.0, 5.0}), 1.0);

@@ -8,6 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "tests/catch.hpp"
 #include "tests/problems/mesh_laws.hpp"
@@ -65,13 +69,25 @@ class InsideRanges final : public Observer {
       const double first = from.responses[law].y, last = to.responses[law].y;
       short_of_range = std::max({short_of_range, std::min({low, first, last}) - range.low - range.error,
                                  range.high - std::max({high, first, last}) - range.error});
+      note_bend(law, t_0, h, range);
     }
     ++steps;
   }
   int steps = 0, reaches = 0, ranges = 0;
   double largest = 0.0, beyond_reach = 0.0, widest = 0.0, beyond_range = 0.0, short_of_range = 0.0;  // N
+  int bends = 0;
+  double off_bend = 0.0;  // N
 
  private:
+  /// The second derivative at a single turn, beside that of the parabola through three points about it.
+  void note_bend(std::size_t law, double t_0, double h, const StepMotion::Range& range) {
+    constexpr double kPart = 0.02;
+    if (range.turns != 1 || range.turn < kPart || range.turn > 1.0 - kPart) return;
+    const auto y = [&](double part) { return motion_->at(t_0 + h * part).at.responses[law].y; };
+    const double before = y(range.turn - kPart), at = y(range.turn), behind = y(range.turn + kPart);
+    off_bend = std::max(off_bend, std::abs((before - 2.0 * at + behind) / (kPart * kPart) - range.bend));
+    ++bends;
+  }
   StepMotion* motion_ = nullptr;
   std::vector<std::optional<StepMotion::Range>> reach_, range_;
 };
@@ -311,6 +327,8 @@ TEST_CASE("Exact propagation: the ranges of forces inside steps hold what they a
     CHECK(inside.beyond_range < 1e-5 * inside.largest);
     // Between two of the places, 1/12 of the step apart.
     CHECK(inside.short_of_range < 0.01 * inside.largest);
+    CHECK(inside.bends > 20);
+    CHECK(inside.off_bend < 1e-4 * inside.largest);
     CHECK(inside.beyond_reach < 1e-9 * inside.largest);
     CHECK(inside.widest < inside.largest);
     const std::string name = law.name;
