@@ -21,7 +21,6 @@ namespace drev {
 
 namespace {
 
-constexpr double kWatchedAngle = 0.3;  // omega h between two points inside a step that observers are shown
 constexpr int kMaxCuts = 20;
 constexpr double kShortest = 1e-6;    // of the largest step: below it, what projection leaves is passed over
 constexpr double kKnotWidth = 4e-15;  // rounding of an angle that is looked up, relative to the time
@@ -305,10 +304,7 @@ class ExactRun final : public StepMotion {
     const double* beyond_cubic =
         expansion_.beyond_cubic(end.s, changed_ || beside_knot_ > 0.0 || end.at_change() || end.at_law_knot);
     for (Observer* o : observers_) inside |= o->looks_inside(now_, next_, beyond_cubic);
-    // Projected forces swing faster.
-    const double parts = inside ? std::max(std::ceil(fastest_ * length / kWatchedAngle),
-                                           known_.projected() ? kProjectionDegree : 0.0)
-                                : 1.0;
+    const double parts = inside ? expansion_.parts_to_watch(fastest_ * length, end.s) : 1.0;
     const auto clear = [&](const std::optional<LawSeries::Change>& change, double s, double t,
                            double otherwise) {
       if (!inside) return t_0;

@@ -38,50 +38,85 @@ constexpr double kOfScale = 1e-9, kMostDropped = TaylorSeries::kMaxDegree;
 // How far a kink's response, between s^3 and s^7 from somewhere on, lies from the cubic through its ends: of y and y' there,
 // twice the most.
 constexpr double kOfKinks = 0.5, kOfKinkRates = 0.12;
+// omega h of the fastest mode between two points inside a step that observers are shown; the same as points a degree of a
+// series whose last term is below 1e-8 of its largest: it turns through a fifth of its degree in rad at most.
+constexpr double kWatchedAngle = 0.3, kWatchedPerDegree = 0.5;
 
 using Terms = std::vector<double>;
 
+/// Lanes of places that a series asks for beyond the two of a step of the modes, whose terms are `enough` at most.
+std::size_t more_lanes(const Terms& series, std::size_t enough) {
+  return series.size() <= enough ? 0 : (series.size() - enough + kLanes - 1) / kLanes;
+}
+constexpr std::size_t kEnoughTerms = 25, kEnoughOfScale = 13;
+
 /// The range of scale x + more in [0, end], a step of series; its turn as a part of that. Without terms scale is 1, more is 0.
 StepMotion::Range range_of(const Terms& x, const Terms& scale, const Terms& more, double end) {
-  constexpr std::size_t kParts = 2 * kLanes;  // omega h <= 0.35 between two places
-  using Values = std::array<double, kParts + 1>;
+  constexpr std::size_t kMost = kLanes * (2 + 2 * (TaylorSeries::kMaxDegree / kLanes));
+  // omega h <= 0.35 between two places
+  const std::size_t parts = kLanes * (2 + more_lanes(x, kEnoughTerms) + more_lanes(scale, kEnoughOfScale));
+  using Values = std::array<double, kMost + 1>;
   Values s, value, slope;
-  for (std::size_t i = 0; i <= kParts; ++i) s[i] = end * static_cast<double>(i) / kParts;
-  const auto evaluate = [&s](const Terms& of, Values& y, Values& rate) {
+  const double part = end / static_cast<double>(parts);
+  for (std::size_t i = 0; i <= parts; ++i) s[i] = part * static_cast<double>(i);
+  const auto evaluate = [&s, parts](const Terms& of, Values& y, Values& rate) {
     y[0] = of[0];
     rate[0] = of.size() > 1 ? of[1] : 0.0;
-    polynomial_values(kParts, static_cast<int>(of.size()), of.data(), &s[1], &y[1], &rate[1]);
+    polynomial_values(static_cast<int>(parts), static_cast<int>(of.size()), of.data(), &s[1], &y[1],
+                      &rate[1]);
   };
   evaluate(x, value, slope);
   Values r, r_slope;
   if (!scale.empty()) {
     evaluate(scale, r, r_slope);
-    for (std::size_t i = 0; i <= kParts; ++i) {
+    for (std::size_t i = 0; i <= parts; ++i) {
       slope[i] = r[i] * slope[i] + r_slope[i] * value[i];
       value[i] *= r[i];
     }
   }
   if (!more.empty()) {
     evaluate(more, r, r_slope);
-    for (std::size_t i = 0; i <= kParts; ++i) {
+    for (std::size_t i = 0; i <= parts; ++i) {
       value[i] += r[i];
       slope[i] += r_slope[i];
     }
   }
   const auto scale_at = [&scale](double at) { return scale.empty() ? 1.0 : polynomial_value(scale, at); };
+  struct Place {
+    double s, y, slope;
+  };
+  const auto value_at = [&](double at) {
+    return scale_at(at) * polynomial_value(x, at) + polynomial_value(more, at);
+  };
+  const auto slope_at = [&](double at) {
+    return scale_at(at) * polynomial_slope(x, at) + polynomial_slope(scale, at) * polynomial_value(x, at) +
+           polynomial_slope(more, at);
+  };
   StepMotion::Range range{value[0], value[0]};
   const auto take = [&range](double y) {
     range.low = std::min(range.low, y);
     range.high = std::max(range.high, y);
   };
-  for (std::size_t i = 1; i <= kParts; ++i) {
-    take(value[i]);
-    const auto inside = cubic_peak(value[i - 1], slope[i - 1], value[i], slope[i], end / kParts);
-    if (!inside) continue;
-    const double turn = s[i - 1] + end / kParts * inside->s;
-    take(scale_at(turn) * polynomial_value(x, turn) + (more.empty() ? 0.0 : polynomial_value(more, turn)));
+  const auto take_turn = [&](const Place& a, const Place& b) {
+    const auto inside = cubic_peak(a.y, a.slope, b.y, b.slope, b.s - a.s);
+    if (!inside) return;
+    const double turn = a.s + (b.s - a.s) * inside->s;
+    take(value_at(turn));
     ++range.turns;
     range.turn = turn / end;
+  };
+  for (std::size_t i = 1; i <= parts; ++i) {
+    take(value[i]);
+    if (cubic_is_monotone(value[i - 1], slope[i - 1], value[i], slope[i], part)) continue;
+    const Place a{s[i - 1], value[i - 1], slope[i - 1]}, b{s[i], value[i], slope[i]};
+    if (const auto dip = cubic_dip(a.y, a.slope, b.y, b.slope, part)) {
+      const double at = a.s + part * *dip;
+      const Place between{at, value_at(at), slope_at(at)};
+      take_turn(a, between);
+      take_turn(between, b);
+    } else {
+      take_turn(a, b);
+    }
   }
   if (range.turns > 0) {
     const double at = end * range.turn;
@@ -173,6 +208,11 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kPassesAgree);
     tolerance = std::clamp(0.5 * share / contraction_, share, loosest);
   }
+}
+
+double StepExpansion::parts_to_watch(double angle, double s) const {
+  const double least = known.projected() ? kProjectionDegree : 1.0;  // projected forces swing faster
+  return std::ceil(std::max({least, angle / kWatchedAngle, kWatchedPerDegree * series.degree() * s}));
 }
 
 const double* StepExpansion::beyond_cubic(double s, bool jumps) {

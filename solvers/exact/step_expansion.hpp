@@ -85,6 +85,8 @@ class StepExpansion {
   /// Observer::looks_inside() over the step up to s; jumps: accelerations may jump at an end of it, where nobody knows which one a
   /// point has, so that cubics tell nothing of rates.
   const double* beyond_cubic(double s, bool jumps);
+  /// Into how many parts a step up to s is to be cut, so that cubics show what happens in each; angle: of the fastest mode [rad].
+  double parts_to_watch(double angle, double s) const;
   /// StepMotion::force_range() up to s: of the series; what kinks add is within the error.
   std::optional<StepMotion::Range> force_range(const LawSeries& laws, int law, double s) {
     Force& force = forces_[idx(law)];

@@ -95,7 +95,14 @@ void search_by_values(PeakSample a, PeakSample m, PeakSample b, double sign, con
 
 void search_peak(const PeakSample& a, const PeakSample& b, const Look& look, double range, Peak& peak) {
   if (a.rate && b.rate) {
-    if (*a.rate * *b.rate < 0.0) search_by_rates(a, b, look, range, peak);
+    if (*a.rate * *b.rate < 0.0) return search_by_rates(a, b, look, range, peak);
+    const auto dip = cubic_dip(a.y, *a.rate, b.y, *b.rate, b.t - a.t);
+    if (!dip) return;
+    const PeakSample m = look(a.t + *dip * (b.t - a.t));
+    peak.note(m.y, m.t);
+    if (!m.rate || !(*m.rate * *a.rate < 0.0)) return;
+    search_by_rates(a, m, look, range, peak);
+    search_by_rates(m, b, look, range, peak);
     return;
   }
   const double swing = std::max(kSwing * std::abs(b.y - a.y), kRangeSwing * range);

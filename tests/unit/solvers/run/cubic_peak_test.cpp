@@ -53,3 +53,30 @@ TEST_CASE("The reach of a cubic holds its values, and is that of its ends where 
   }
   CHECK(monotone > 200);
 }
+
+TEST_CASE(
+    "A cubic whose end rates have one sign is monotone, or dips between two extrema: told apart by its "
+    "slope") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  int dips = 0, monotone = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const double h = 0.7, y_0 = 0.3, y_1 = y_0 + 0.2 * any(random), r_0 = any(random),
+                 r_1 = std::copysign(any(random), r_0);
+    const double rise = y_1 - y_0, d_0 = h * r_0, d_1 = h * r_1;
+    const auto slope = [&](double s) {
+      return d_0 + 2.0 * s * (3.0 * rise - 2.0 * d_0 - d_1) + 3.0 * s * s * (d_0 + d_1 - 2.0 * rise);
+    };
+    double least = 1.0;  // slope over that of an end
+    for (int k = 0; k <= 1000; ++k) least = std::min(least, slope(1e-3 * k) / d_0);
+    const auto dip = cubic_dip(y_0, r_0, y_1, r_1, h);
+    if (std::abs(least) > 1e-4) CHECK(dip.has_value() == (least < 0.0));
+    if (dip) CHECK(slope(*dip) / d_0 == Approx(least).margin(1e-4));
+    const bool steady = cubic_is_monotone(y_0, r_0, y_1, r_1, h);
+    if (steady) CHECK(least > -1e-12);
+    dips += dip.has_value();
+    monotone += steady;
+  }
+  CHECK(dips > 400);
+  CHECK(monotone > 400);
+}
