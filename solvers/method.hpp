@@ -46,20 +46,21 @@ RunSummary run_method(const System& system, const Method& method, const MethodRu
 /// Which method in time suits a system.
 ///
 /// The choice follows what the system is, not taste:
-///   1. exact propagation, where why_not_exact() finds nothing and it is affordable. Nothing is cheaper
-///      (docs/which_method.md).
+///   1. exact propagation, where why_not_exact() finds nothing, for any duration: a long run takes long with every
+///      method, and nothing is cheaper (docs/which_method.md) but where the fastest modes are at rest: try_methods().
 ///   2. dormand_prince with steps controlled to 1e-4, where exact propagation cannot be used (general
 ///      elements, motions that are unknown functions) and it is affordable.
-///   3. sdirk4, controlled likewise: implicit, for what is too stiff, too large or too long for 1 or 2.
+///   3. sdirk4, controlled likewise: implicit, for what is too stiff, too large or too long for 2.
 ///   4. average acceleration at the model's step, where errors cannot be estimated: a general element has a
 ///      history, whose error no estimate sees, or the mass matrix is singular.
 ///
-/// Affordable: p (20 + unknowns + 10 contacts) <= 1.5e10 products, about half a minute; p: 25 for exact
-/// propagation, 70 for dormand_prince, in each step of 3/omega of the fastest mode.
+/// Affordable: 70 (20 + unknowns + 10 contacts) <= 1.5e10 products in all steps of 3/omega of the fastest mode, about half
+/// a minute.
 struct MethodChoice {
   Method method;
   std::string reason;  ///< one sentence without full stop
-  /// What exact propagation would cost: products times the last factor above; 0 where it cannot be used.
+  /// What exact propagation would cost, 25 (20 + unknowns + 10 contacts) products in each of these steps; 0 where it cannot
+  /// be used.
   double exact_work = 0.0;
 };
 

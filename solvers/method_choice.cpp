@@ -115,26 +115,21 @@ MethodChoice choose_method(const System& system, double duration, double step) {
   const double steps = std::max(1.0, rate * duration / kRateTimesStep);
   const double cost = kUnknownsOfStep + system.size() + kUnknownsOfContact * static_cast<double>(contacts);
   const auto work = [&](double products_in_step) { return steps * products_in_step * cost; };
-  std::ostringstream text;
-  text.precision(2);
-  text << "its fastest mode, " << to_hz(rate) << " Hz, ";
   if (why_not) {
     if (work(kProductsOfStages) <= kMostWork)
       return {{.name = "dormand_prince", .tolerance = kControlledTolerance},
               refused + "; steps controlled by their error"};
-    text << "would cost explicit methods " << steps << " steps; controlled steps of an implicit method";
-    return {{.name = "sdirk4", .tolerance = kControlledTolerance}, refused + "; " + text.str()};
+    std::ostringstream text;
+    text.precision(2);
+    text << refused << "; its fastest mode, " << to_hz(rate) << " Hz, would cost explicit methods " << steps
+         << " steps; controlled steps of an implicit method";
+    return {{.name = "sdirk4", .tolerance = kControlledTolerance}, text.str()};
   }
   const std::string model = "the model is " + std::string(kind_of(system)) + ", with " +
                             counted(system.size(), "unknown") + " and " + counted(contacts, "contact");
-  const double exact_work = work(kProductsInStep);
-  if (exact_work <= kMostWork)
-    return {{.name = kExact, .tolerance = ExactOptions{}.tolerance},
-            model + ": exact between located changes",
-            exact_work};
-  text << "would cost exact propagation " << kProductsInStep * steps
-       << " matrix-vector products: controlled steps";
-  return {{.name = "sdirk4", .tolerance = kControlledTolerance}, model + ", but " + text.str(), exact_work};
+  return {{.name = kExact, .tolerance = ExactOptions{}.tolerance},
+          model + ": exact between located changes",
+          work(kProductsInStep)};
 }
 
 }  // namespace drev

@@ -62,7 +62,12 @@ std::vector<ElementEnergy> ElementEnergy::of_all(const System& system) {
   for_each_stated(system, [&](int element, const Terms& terms, const std::vector<int>& nodes) {
     ElementEnergy& own = all[idx(element)];
     Part part{nodes, terms.mass, terms.damping, terms.deviation_damping, terms.stiffness};
-    if (terms.rayleigh) part.damping += a * terms.mass + b * terms.stiffness;
+    // It acts on the deviations alone, as in the system's equations.
+    if (terms.rayleigh) {
+      if (part.deviation_damping.size() == 0)
+        part.deviation_damping.setZero(terms.mass.rows(), terms.mass.cols());
+      part.deviation_damping += a * terms.mass + b * terms.stiffness;
+    }
     for (const ScalarSpec& s : terms.scalars)
       if (const LawPiece* line = straight_line(s)) {
         const Eigen::MatrixXd square = s.b * s.b.transpose();

@@ -242,6 +242,29 @@ TEST_CASE("A driven train: actual speeds, and every element's work is what it lo
   CHECK(work == Approx(kinetic).margin(1e-9 * largest));
 }
 
+TEST_CASE(
+    "Rayleigh damping heats by deviations alone: elements of a turning train lose what the energy balance "
+    "says",
+    "[element_energy]") {
+  Model m("discs");
+  for (const char* name : {"a", "b"}) {
+    m.add_node(name);
+    m.add<Inertia>(std::string("J_") + name, {name}, {.inertia = 1.0});
+  }
+  m.add<ShaftSpring>("shaft", {"a", "b"}, {.stiffness = 1000.0});
+  m.add<RayleighDamping>("rayleigh", {}, {.alpha_mass = 10.0, .beta_stiffness = 1e-4});
+  m.add<EngineOrderTorque>("gas", {"a"}, {.harmonics = {{1.0, 1.0, 0.0}}});
+  m.set_reference("a", constant_speed(1000.0 * kPi / 30.0));
+  const System system = m.build();
+  ElementTotals totals(system);
+  const RunSummary summary = run_method(system, method_of("exact"), {.t_end = 1.0}, {&totals});
+  REQUIRE(summary.ok());
+  double heat = 0.0;
+  for (const ElementTotals::Row& row : totals.rows()) heat += row.dissipated.value_or(0.0);
+  CHECK(summary.energy.dissipated > 1e-5);
+  CHECK(heat == Approx(summary.energy.dissipated).epsilon(1e-8));
+}
+
 TEST_CASE("What is summed up over a run is recorded and refused elsewhere", "[element_energy]") {
   const System system = oscillator(1.0, 3.0, 0.0);
   const std::vector<std::string> name{"damper.dissipated_J"};
