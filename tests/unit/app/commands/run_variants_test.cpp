@@ -132,6 +132,40 @@ TEST_CASE(
   CHECK(contains(again.out, "complete already"));
 }
 
+TEST_CASE("Each variant that failed has its own status and reason") {
+  const TemporaryFolder folder;
+  const Words words{"run",
+                    "gear_drive",
+                    "--vary",
+                    "backlash_mm=0.1,0.12,0.14,20,0.2,11",
+                    "--step",
+                    "1e-4",
+                    "--duration",
+                    "0.1",
+                    "--table",
+                    "--out",
+                    (folder / "r").string()};
+  const auto run = drev_command(words);
+  INFO(run.out << run.err);
+  CHECK(run.exit_code == 1);
+  const Json failures = Json::parse(read_file(folder / "r/variants.json")).at("failures");
+  REQUIRE(failures.size() >= 3);
+  const std::vector<std::string> backlashes{"0.1", "0.12", "0.14", "20", "0.2", "11"};
+  std::vector<int> bad;
+  for (const Json& failure : failures) {
+    const int number = failure.at("variant");
+    const std::string status = failure.at("status"), reason = failure.at("reason");
+    const std::string backlash = backlashes[static_cast<std::size_t>(number)];
+    if (status == "bad_input") bad.push_back(number);
+    CHECK(contains(reason, status == "bad_input" ? "backlash_mm = " + backlash + " mm" : "energy balance"));
+    CHECK(contains(run.out, "variant " + std::to_string(number) + " (backlash_mm=" + backlash +
+                                "): " + status + ": " + reason.substr(0, 20)));
+  }
+  CHECK(bad == std::vector<int>{3, 5});
+  CHECK(failures[0].at("variant") == 0);
+  CHECK(failures[0].at("status") == "energy_error");
+}
+
 TEST_CASE("A study's report has its figures, points of the table, and the command that gives it again") {
   const TemporaryFolder folder;
   const std::string page = (folder / "page.html").string();
@@ -219,7 +253,7 @@ TEST_CASE("A study resumed with a changed model is refused by its change, and no
     const Json study = Json::parse(description);
     const std::size_t numbers = (1 + study.at("figures").size()) * study.at("block").get<std::size_t>();
     VariantStore store(out, description, {.blocks = 4, .numbers = numbers}, true);
-    store.put(1, {std::vector<double>(numbers), ""});
+    store.put(1, {.numbers = std::vector<double>(numbers)});
     store.sync();
   }
   const auto careless = drev_command(words);
