@@ -1,13 +1,47 @@
 #include "app/commands/variants.hpp"
 
+#include <algorithm>
+
 #include "app/base/text_layout.hpp"
+#include "app/cli/model_option.hpp"
+#include "app/commands/run_request.hpp"
+#include "app/variants/quasi_random.hpp"
 #include "app/variants/variant_plan.hpp"
 
 namespace drev::app {
 
 namespace {
 
-constexpr double kMostVariants = 10000;  // folders
+constexpr double kMostVariants = 10000;     // folders
+constexpr std::uint64_t kMostTried = 1000;  // variants that are built in search of one that can be
+
+CommandLine with_parameters(const CommandLine& line, const ParameterValues& values) {
+  CommandLine one = line;
+  one.parameters.insert(one.parameters.end(), values.begin(), values.end());
+  return one;
+}
+
+/// The first variant whose model can be built.
+std::optional<ParameterValues> buildable_variant(const CommandLine& line, const VariantList& variants) {
+  std::vector<Finding> findings;
+  const std::optional<ModelRequest> base = build_model(line, findings);
+  if (!findings.empty()) return {};
+  const std::uint64_t tried = std::min(variants.count, kMostTried);
+  for (std::uint64_t k = 0; k < tried; ++k) {
+    // One of each part of a long list, in no regular distance, which could be that of a bad value.
+    const std::uint64_t first = k * variants.count / tried, end = (k + 1) * variants.count / tried;
+    const ParameterValues values = variants.parameters(first + hashed(k, variants.count) % (end - first));
+    try {
+      Parameters parameters = base->parameters;
+      for (const auto& [name, value] : values) parameters.set(name, value);
+      parameters.check();
+      base->entry->build(parameters).model.build();
+      return values;
+    } catch (const ModelError&) {  // of this variant
+    }
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -24,6 +58,16 @@ std::vector<Variant> read_variants(const std::vector<std::string>& words, std::v
   std::vector<Variant> variants;
   for (std::uint64_t i = 0; i < plan.count(); ++i) variants.push_back({plan.parameters(i)});
   return variants;
+}
+
+RunRequest request_variant(const CommandLine& line, const VariantList& variants) {
+  try {
+    return request_run(with_parameters(line, variants.parameters(0)));
+  } catch (const ModelError&) {
+    const auto values = line.findings.empty() ? buildable_variant(line, variants) : std::nullopt;
+    if (!values) throw;
+    return request_run(with_parameters(line, *values));
+  }
 }
 
 }  // namespace drev::app

@@ -37,6 +37,23 @@ def test_what_is_wrong_is_a_model_error():
         drev.load("gear_drive").study({"backlash_m": [1, 2]}, **STEPS)
 
 
+def test_each_failed_variant_has_its_status_and_reason(tmp_path):
+    drive = drev.load("gear_drive")
+    study = drive.study({"backlash_mm": [99, 0.1, 20]}, **STEPS)
+    assert list(study.status) == ["bad_input", "success", "bad_input"]
+    assert study.reasons.keys() == {0, 2} and "= 99 mm" in study.reasons[0] and "= 20 mm" in study.reasons[2]
+    for resume in (False, True):  # computed, then from its table
+        stored = drive.study({"backlash_mm": [99, 0.1, 20]}, out=tmp_path, resume=resume, **STEPS)
+        assert stored.reasons == study.reasons
+    with pytest.raises(drev.ModelError, match="= 99 mm"):
+        drive.study({"backlash_mm": [99, 20]}, **STEPS)
+    runs = drive.vary({"backlash_mm": [99, 0.1, 20]}, **STEPS)
+    assert [v.status for v in runs] == ["bad_input", "success", "bad_input"]
+    assert list(runs.to_pandas()["status"]) == ["bad_input", "success", "bad_input"]
+    with pytest.raises(drev.ModelError, match="= 99 mm"):
+        drive.vary({"backlash_mm": [99, 20]}, **STEPS)
+
+
 def test_dask_gives_the_same_rows():
     distributed = pytest.importorskip("distributed")
     drive = drev.load("gear_drive")

@@ -166,6 +166,47 @@ TEST_CASE("Each variant that failed has its own status and reason") {
   CHECK(failures[0].at("status") == "energy_error");
 }
 
+TEST_CASE("A bad first variant has its place and status among the results, as a later one has") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  const auto run = [&](const Words& more) {
+    std::filesystem::remove_all(out);
+    Words words{"run", "gear_drive", "--step", "2e-5", "--duration", "0.01", "--json", "--out", out};
+    words.insert(words.end(), more.begin(), more.end());
+    return drev_command(words);
+  };
+  const auto table = run({"--table", "--vary", "backlash_mm=20,0.1"});
+  INFO(table.err);
+  CHECK(table.exit_code == 2);
+  REQUIRE(std::filesystem::exists(folder / "r/variants.h5"));
+  const Json summary = Json::parse(table.out);
+  CHECK(summary.at("statuses").at("success") == 1);
+  REQUIRE(summary.at("failures").size() == 1);
+  CHECK(summary.at("failures")[0].at("variant") == 0);
+  CHECK(summary.at("failures")[0].at("status") == "bad_input");
+  // Normally distributed: some are below 0.
+  const auto sample = run({"--vary", "backlash_mm=normal(0.15,0.2)", "--sample", "lhs:10"});
+  const Json sampled = Json::parse(sample.out);
+  CHECK(sampled.at("statuses").at("bad_input").get<int>() > 0);
+  CHECK(sampled.at("statuses").at("success").get<int>() > 0);
+  const auto many = run({"--vary", "backlash_mm=20,0.1"});
+  CHECK(many.exit_code == 2);
+  const Json runs = Json::parse(many.out).at("runs");
+  CHECK(runs[0].at("status") == "bad_input");
+  CHECK(runs[1].at("status") == "success");
+  // Where all are bad, or the model is without them, nothing is run.
+  for (const Words& bad : {Words{"--vary", "backlash_mm=20,30"},
+                           Words{"--vary", "backlash_mm=20,0.1", "--set", "engine_rpm=-1"}})
+    for (const bool tabled : {true, false}) {
+      Words words = bad;
+      if (tabled) words.push_back("--table");
+      const auto refused = run(words);
+      CHECK(refused.exit_code == 2);
+      CHECK(contains(refused.err, "backlash_mm = 20 mm, must be 0 to 10"));
+      CHECK_FALSE(std::filesystem::exists(out));
+    }
+}
+
 TEST_CASE("A study's report has its figures, points of the table, and the command that gives it again") {
   const TemporaryFolder folder;
   const std::string page = (folder / "page.html").string();
