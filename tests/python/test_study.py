@@ -97,6 +97,8 @@ def test_an_optimum_is_that_of_all_combinations():
     assert found.certain and found.value == study["max_mesh_force_N"].min()
     assert found.parameters["backlash_mm"] == study["backlash_mm"][study["max_mesh_force_N"].argmin()]
     assert "least max_mesh_force_N" in str(found)
+    partly = drive.optimise({"backlash_mm": [0.1, 0.15, 20]}, minimise="max_mesh_force_N", **STEPS)
+    assert not partly.certain and "= 20 mm" in partly.data["failures"][0]["reason"]
     searched = drive.optimise({"backlash_mm": "uniform(0.1,0.2)"}, maximise="max_mesh_force_N", variants=20, **STEPS)
     assert not searched.certain and searched.value >= found.value and searched.data["variants"] <= 20
     with pytest.raises(drev.ModelError, match="did you mean"):
