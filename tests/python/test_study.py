@@ -37,7 +37,7 @@ def test_what_is_wrong_is_a_model_error():
         drev.load("gear_drive").study({"backlash_m": [1, 2]}, **STEPS)
 
 
-def test_each_failed_variant_has_its_status_and_reason(tmp_path):
+def test_each_variant_has_its_own_status_reason_and_duration(tmp_path):
     drive = drev.load("gear_drive")
     study = drive.study({"backlash_mm": [99, 0.1, 20]}, **STEPS)
     assert list(study.status) == ["bad_input", "success", "bad_input"]
@@ -47,6 +47,11 @@ def test_each_failed_variant_has_its_status_and_reason(tmp_path):
         assert stored.reasons == study.reasons
     with pytest.raises(drev.ModelError, match="= 99 mm"):
         drive.study({"backlash_mm": [99, 20]}, **STEPS)
+    with pytest.raises(drev.ModelError, match="is the duration of the runs"):
+        drive.study({"duration_s": [0.01, 0.02]}, **STEPS)
+    with pytest.raises(drev.ModelError, match="is the duration of the runs"):
+        drive.vary({"duration_s": [0.01, 0.02]}, **STEPS)
+    assert drive.run(**STEPS).summary["parameters"]["duration_s"] == 0.01
     runs = drive.vary({"backlash_mm": [99, 0.1, 20]}, **STEPS)
     assert [v.status for v in runs] == ["bad_input", "success", "bad_input"]
     assert list(runs.to_pandas()["status"]) == ["bad_input", "success", "bad_input"]
