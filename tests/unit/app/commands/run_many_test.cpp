@@ -291,6 +291,15 @@ TEST_CASE("The duration that is stated is the one that was run, and cannot be va
     }
 }
 
+TEST_CASE("A directory that does not exist has its name among the results") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  const auto run = drev_command({"run", (folder / "trains/").string(), "two_inertia", "--out", out});
+  CHECK(contains(run.err, "trains: bad_input: "));
+  CHECK(run_of(json_file(folder / "r/runs.json"), "trains").at("status") == "bad_input");
+  CHECK(contains(read_file(out + "/runs.csv"), "\ntrains,bad_input,"));
+}
+
 TEST_CASE("Table of several runs that cannot be written: what became of them is told all the same") {
   const TemporaryFolder folder;
   const std::string out = (folder / "r").string();
