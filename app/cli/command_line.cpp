@@ -100,6 +100,17 @@ bool names_model(const std::string& word) {
   return is_built_in(word) || std::filesystem::exists(word, error);
 }
 
+/// A word behind an option that does not exist is its value rather than one of several models.
+void drop_values_of_unknown(int argc, char** argv, const std::vector<std::string>& extras, Raw& raw) {
+  const std::vector<std::string> words(argv, argv + argc);
+  for (const std::string& extra : extras) {
+    const auto option = std::find(words.begin(), words.end(), extra);
+    if (!looks_like_option(extra) || extra.find('=') != extra.npos || words.end() - option < 2) continue;
+    const auto value = std::find(raw.models.begin(), raw.models.end(), *(option + 1));
+    if (raw.models.size() > 1 && value != raw.models.end()) raw.models.erase(value);
+  }
+}
+
 /// --set a=1 MODEL: models came to stand among the parameters.
 void find_models_among_sets(Raw& raw, bool several) {
   for (auto set = raw.sets.begin(); set != raw.sets.end();) {
@@ -253,6 +264,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv, const std::vector<Co
                     [&](const CommandEntry& entry) { return entry.name == sub.get_name(); });
   CommandLine line{.command = &command, .json = raw.json, .quiet = raw.quiet};
   if (!raw.model.empty()) raw.models = {raw.model};
+  drop_values_of_unknown(argc, argv, sub.remaining(), raw);
   find_models_among_sets(raw, command.takes_models);
   find_sets_among_models(raw, line.findings);
   if (!raw.models.empty()) line.model = raw.models.front();

@@ -94,13 +94,23 @@ bool is_model_directory(const std::string& word) {
   return !is_built_in(word) && fs::is_directory(word, error);
 }
 
+namespace {
+
+/// A slash behind the name of a directory is not of the name.
+std::string name_of(const std::string& word) {
+  if (is_built_in(word)) return word;
+  return fs::path(word.substr(0, word.find_last_not_of('/') + 1)).stem().string();
+}
+
+}  // namespace
+
 ModelList list_models(const std::vector<std::string>& words, std::vector<Finding>& findings) {
   ModelList list;
   for (const std::string& word : words)
     if (is_model_directory(word))
       add_directory(word, list, findings);
     else
-      list.models.push_back({is_built_in(word) ? word : fs::path(word).stem().string(), word});
+      list.models.push_back({name_of(word), word});
   std::map<std::string, std::string> named;
   for (const NamedModel& model : list.models)
     if (model.name == "." || model.name == ".." || model.name.starts_with("runs."))

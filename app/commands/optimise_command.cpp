@@ -21,7 +21,8 @@ namespace drev::app {
 
 namespace {
 
-constexpr std::size_t kTold = 10;  // of the best variants
+constexpr std::size_t kTold = 10;        // of the best variants
+constexpr std::size_t kFailedTold = 20;  // of those that failed, as text
 
 struct OptimumRequest {
   VariantStudy study;
@@ -116,6 +117,14 @@ std::string values_text(const ParameterValues& values) {
   return join(parts, " ");
 }
 
+/// The numbers of the variants that failed.
+std::vector<std::size_t> failed_in(const Optimum& optimum) {
+  std::vector<std::size_t> failed;
+  for (std::size_t i = 0; i < optimum.tried.size(); ++i)
+    if (optimum.tried[i].status != VariantStatus::success) failed.push_back(i);
+  return failed;
+}
+
 Json optimum_object(const OptimumRequest& request, const Optimum& optimum) {
   const FigureColumn& figure = request.study.figures()[request.options.figure];
   Json object{{"$schema", "urn:drev:optimum:1"}, {"kind", "optimum"}, {"drev", DREV_VERSION}};
@@ -135,7 +144,38 @@ Json optimum_object(const OptimumRequest& request, const Optimum& optimum) {
                               {"variant", optimum.order[i]},
                               {"varied", values_object(tried.values)}});
   }
+  object["failures"] = Json::array();
+  const std::vector<std::size_t> failed = failed_in(optimum);
+  for (std::size_t i = 0; i < std::min(kFailuresKept, failed.size()); ++i) {
+    const TriedVariant& tried = optimum.tried[failed[i]];
+    object["failures"].push_back({{"variant", failed[i]},
+                                  {"status", status_text(tried.status)},
+                                  {"varied", values_object(tried.values)},
+                                  {"reason", tried.reason}});
+  }
   return object;
+}
+
+/// Which variants failed and why.
+std::string failures_text(const Optimum& optimum) {
+  const std::vector<std::size_t> failed = failed_in(optimum);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kFailedTold, failed.size()); ++i) {
+    const TriedVariant& tried = optimum.tried[failed[i]];
+    text += wrap(values_text(tried.values) + ": " + status_text(tried.status) + ": " + tried.reason, 2);
+  }
+  if (failed.size() > kFailedTold)
+    text += "  " + std::to_string(failed.size() - kFailedTold) +
+            " more failed; tried.csv of --out DIR lists all\n";
+  return text;
+}
+
+/// Whether the best variant is certain to be the best of all.
+std::string certainty_text(const Optimum& optimum) {
+  if (!optimum.all) return "no: a search proves nothing; see whether another --seed finds less";
+  if (optimum.order.size() == optimum.tried.size()) return "yes: every combination was computed";
+  return "among the " + std::to_string(optimum.order.size()) + " of " + std::to_string(optimum.tried.size()) +
+         " combinations that have a figure; nothing is known of the rest";
 }
 
 std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) {
@@ -150,17 +190,16 @@ std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) 
                                (optimum.all ? ", all combinations"
                                             : ", by a Latin hypercube and a search from its best")) +
       labelled("method", to_text(request.study.request().method));
-  if (const std::size_t none = optimum.tried.size() - optimum.order.size())
-    text += labelled("failed", std::to_string(none) + " variants, which have no figure");
+  const std::size_t failed = failed_in(optimum).size(),
+                    none = optimum.tried.size() - optimum.order.size() - failed;
+  if (failed > 0) text += labelled("failed", std::to_string(failed) + " of them") + failures_text(optimum);
+  if (none > 0) text += labelled("without figure", std::to_string(none) + " of them, which succeeded");
   if (optimum.interrupted) text += labelled("interrupted", "this is the best so far");
   if (optimum.order.empty()) return text + labelled("optimum", "none: no variant succeeded");
   const TriedVariant& best = optimum.tried[optimum.order[0]];
   text += labelled((request.options.largest ? "largest " : "least ") + figure.name,
                    digits(best.figure, 8) + unit) +
-          labelled("at", values_text(best.values)) +
-          labelled("certain", optimum.all
-                                  ? "yes: every combination was computed"
-                                  : "no: a search proves nothing; see whether another --seed finds less") +
+          labelled("at", values_text(best.values)) + labelled("certain", certainty_text(optimum)) +
           "\nThe best variants\n";
   std::vector<std::vector<std::string>> rows{{"parameters", figure.name + in_head}};
   for (std::size_t i = 0; i < std::min(kTold, optimum.order.size()); ++i) {
@@ -174,12 +213,12 @@ std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) 
 std::string tried_csv(const OptimumRequest& request, const Optimum& optimum) {
   std::string csv;
   for (const Varied& v : request.study.plan().varied()) csv += csv_cell(v.name) + ",";
-  csv += "status," + csv_cell(request.study.figures()[request.options.figure].name) + "\n";
+  csv += "status," + csv_cell(request.study.figures()[request.options.figure].name) + ",reason\n";
   for (const TriedVariant& tried : optimum.tried) {
     for (const auto& [name, value] : tried.values) csv += csv_cell(value) + ",";
     csv += std::string(status_text(tried.status)) + ",";
     if (std::isfinite(tried.figure)) csv += short_digits(tried.figure, 17);
-    csv += "\n";
+    csv += "," + csv_cell(tried.reason) + "\n";
   }
   return csv;
 }

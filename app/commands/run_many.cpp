@@ -19,7 +19,6 @@
 #include "app/cli/print.hpp"
 #include "app/commands/child_process.hpp"
 #include "app/commands/model_list.hpp"
-#include "app/commands/run_request.hpp"
 #include "app/commands/variants.hpp"
 #include "app/results/many_runs.hpp"
 #include "app/variants/varied.hpp"
@@ -235,9 +234,9 @@ int run_many(const CommandLine& line) {
       if (std::any_of(line.parameters.begin(), line.parameters.end(),
                       [&name = name](const auto& parameter) { return parameter.first == name; }))
         findings.push_back({kCommandLine, "--vary", name, "", "is set by --set already"});
+  VariantList listed;
   if (findings.size() == before)
-    first.parameters.insert(first.parameters.end(), variants.front().parameters.begin(),
-                            variants.front().parameters.end());
+    listed = {variants.size(), [&variants](std::uint64_t i) { return variants[i].parameters; }};
   if (!line.option("--out"))
     findings.push_back(
         {kCommandLine, "--out", "", "", "is needed for several runs: each has its folder there"});
@@ -253,7 +252,7 @@ int run_many(const CommandLine& line) {
     if (!line.option("--out")) first.options.erase("--format");
     first.keeps_history = true;  // --record needs no more than the --out that is asked for above
     first.findings = findings;
-    request_run(first);
+    request_variant(first, listed);
   }
   if (!findings.empty()) throw ModelError(std::move(findings));
 

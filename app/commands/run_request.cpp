@@ -208,6 +208,34 @@ void take_file_options(const ModelRequest& model, CommandLine& line) {
   if (given("--out") || given("--report") || line.keeps_history) take("--every");
 }
 
+/// Gives the model the duration asked for. Where a parameter is the duration, it has this value then, so that what is
+/// stated as parameters is what was run.
+void set_duration(ModelRequest& model, double asked, std::vector<Finding>& findings) {
+  constexpr const char* kParameter = "duration_s";
+  const auto& known = model.parameters.known();
+  const bool has = std::any_of(known.begin(), known.end(), [](const Parameter& p) {
+    return p.name == kParameter && p.kind == Parameter::Kind::number;
+  });
+  if (has && model.parameters.number(kParameter) == model.model_case.duration) try {
+      Parameters parameters = model.parameters;
+      parameters.set(kParameter, short_digits(asked, 17));
+      parameters.check();
+      ModelCase model_case = model.entry->build(parameters);
+      if (model_case.duration == asked) {
+        model.system = model_case.model.build();
+        model.model_case = std::move(model_case);
+        model.parameters = std::move(parameters);
+        return;
+      }
+    } catch (const ModelError& error) {
+      for (Finding finding : error.findings()) {
+        if (finding.parameter == kParameter) finding.place = kCommandLine, finding.parameter = "--duration";
+        findings.push_back(std::move(finding));
+      }
+    }
+  model.model_case.duration = asked;
+}
+
 /// What is wrong with such an option is wrong in the file.
 void blame_file(const CommandLine& line, std::vector<Finding>& findings) {
   for (Finding& finding : findings) {
@@ -264,7 +292,7 @@ RunRequest request_run(const CommandLine& given) {
   if (const auto text = line.option("--duration")) {
     constexpr Range kDuration{1e-12, 1e12};
     const double asked = read_time("--duration", *text, kDuration, "", findings);
-    if (model && kDuration.holds(asked)) model->model_case.duration = asked;
+    if (model && kDuration.holds(asked)) set_duration(*model, asked, findings);
   }
   const double duration = model ? model->model_case.duration : 1.0;
   const std::string limit = model ? "(the run's duration)" : "run's duration";

@@ -14,8 +14,8 @@
 #include "app/cli/option_values.hpp"
 #include "app/cli/print.hpp"
 #include "app/commands/model_list.hpp"
-#include "app/commands/run_request.hpp"
 #include "app/commands/sweep_request.hpp"
+#include "app/commands/variants.hpp"
 #include "app/report/report_file.hpp"
 #include "app/report/report_page.hpp"
 #include "app/report/variants_report.hpp"
@@ -191,12 +191,11 @@ VariantStudy study_of(const CommandLine& line) {
   first.options["--table"] = {""};  // no method by trial, which may find another one another time
   for (const auto& [option, why] : kWithout)
     if (blamed(findings, option)) first.options.erase(option);
-  if (plan && findings.size() == before) {
-    const ParameterValues values = plan->parameters(0);
-    first.parameters.insert(first.parameters.end(), values.begin(), values.end());
-  }
+  VariantList variants;
+  if (plan && findings.size() == before)
+    variants = {plan->count(), [&plan](std::uint64_t i) { return plan->parameters(i); }};
   first.findings = findings;
-  RunRequest request = request_run(first);
+  RunRequest request = request_variant(first, variants);
   if (const auto report = line.option("--report")) {
     if (const auto why = why_no_report(*report))
       findings.push_back({kCommandLine, "--report", *report, "", *why});

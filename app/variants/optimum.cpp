@@ -66,10 +66,11 @@ class OptimumSearch {
     return !result_.interrupted;
   }
 
-  void enter(const ParameterValues& values, const double* row) {
+  void enter(const ParameterValues& values, const BlockRows& rows, std::size_t i) {
     known_.emplace(key_of(values), result_.tried.size());
-    result_.tried.push_back(
-        {values, static_cast<VariantStatus>(static_cast<int>(row[0])), row[1 + options_.figure]});
+    const double* row = rows.numbers.data() + i * study_.row_size();
+    result_.tried.push_back({values, static_cast<VariantStatus>(static_cast<int>(row[0])), rows.reason(i),
+                             row[1 + options_.figure]});
   }
 
   static std::string key_of(const ParameterValues& values) {
@@ -91,7 +92,7 @@ class OptimumSearch {
         for (std::uint64_t i = 0; i < study_.count_of(entered); ++i)
           if (const ParameterValues values = study_.plan().parameters(study_.first_of(entered) + i);
               !known_.contains(key_of(values)))
-            enter(values, next->second.numbers.data() + i * study_.row_size());
+            enter(values, next->second, i);
         waiting.erase(next);
         ++entered;
       }
@@ -177,7 +178,7 @@ class OptimumSearch {
         return worst();
       }
       ++computed_;
-      enter(values, rows->numbers.data());
+      enter(values, *rows, 0);
     }
     const TriedVariant& tried = result_.tried[known_.at(key)];
     return std::isfinite(tried.figure) && tried.status == VariantStatus::success ? cost(tried) : worst();

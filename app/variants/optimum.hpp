@@ -40,13 +40,14 @@ struct OptimumOptions {
 struct TriedVariant {
   ParameterValues values = {};
   VariantStatus status = VariantStatus::failed;
+  std::string reason = {};                                   ///< why it failed; empty: it did not
   double figure = std::numeric_limits<double>::quiet_NaN();  ///< not finite: the variant has none
 };
 
 struct Optimum {
   std::vector<TriedVariant> tried = {};  ///< variants in order of computation, each once
   std::vector<std::size_t> order = {};   ///< numbers of the variants with a figure, the best first
-  bool all = false;                      ///< true: these are all combinations
+  bool all = false;                      ///< true: these are all combinations, those that failed among them
   bool interrupted = false;
 };
 

@@ -16,7 +16,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr char kMagic[9] = "drevVAR1";
+constexpr char kMagic[9] = "drevVAR2";
 constexpr std::uint64_t kPage = 4096;
 
 /// Head at the start of the file; the description follows it.
@@ -25,6 +25,14 @@ struct Head {
   std::uint64_t text, checksum;  // bytes of the description, and its checksum
   std::uint64_t blocks, numbers;
 };
+
+/// End of a place, after the numbers of the rows.
+struct Tail {
+  std::uint64_t at, size;  // position and length of the reasons of the block [bytes]
+  std::uint64_t checksum;
+};
+
+std::size_t place_size_of(std::uint64_t numbers) { return numbers * sizeof(double) + sizeof(Tail); }
 
 std::uint64_t up_to_page(std::uint64_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
 
@@ -70,12 +78,13 @@ void append(std::string& bytes, const void* from, std::size_t size) {
   bytes.append(static_cast<const char*>(from), size);
 }
 
-/// Checksum of a place; never 0, which an unwritten place contains.
-std::uint64_t place_checksum(std::string_view bytes, std::uint64_t block, std::uint64_t key) {
+/// Checksum of a place without its own, and of the reasons; never 0, which an unwritten place contains.
+std::uint64_t place_checksum(std::string_view bytes, std::string_view reasons, std::uint64_t block,
+                             std::uint64_t key) {
   std::string numbers;
   append(numbers, &block, sizeof block);
   append(numbers, &key, sizeof key);
-  return checksum(bytes, checksum(numbers)) | 1U;
+  return checksum(reasons, checksum(bytes, checksum(numbers))) | 1U;
 }
 
 class Reader {
@@ -99,6 +108,32 @@ std::string megabytes(std::uint64_t bytes) {
 
 }  // namespace
 
+const std::string& BlockRows::reason(std::size_t row) const {
+  static const std::string kNoReason;
+  return row < reasons.size() ? reasons[row] : kNoReason;
+}
+
+void BlockRows::set_reason(std::size_t row, const std::string& reason) {
+  if (reasons.size() <= row) reasons.resize(row + 1);
+  std::size_t size = std::min(kReason, reason.size());
+  // A character of several bytes of UTF-8 is left out as a whole.
+  while (size > 0 && size < reason.size() && (static_cast<unsigned char>(reason[size]) & 0xC0U) == 0x80U)
+    --size;
+  reasons[row] = reason.substr(0, size);
+}
+
+std::string reasons_as_bytes(const std::vector<std::string>& reasons) {
+  std::string bytes;
+  for (const std::string& reason : reasons) append(bytes, reason.c_str(), reason.size() + 1);
+  return bytes;
+}
+
+std::vector<std::string> reasons_in(const std::string& bytes) {
+  std::vector<std::string> reasons = split(bytes, '\0');
+  reasons.pop_back();  // behind the last zero there is nothing
+  return reasons;
+}
+
 std::string VariantStore::path_in(const std::string& folder) { return folder + "/variants.partial.store"; }
 
 std::optional<std::string> VariantStore::description_in(const std::string& folder) {
@@ -114,7 +149,7 @@ std::pair<std::uint64_t, std::uint64_t> VariantStore::progress_in(const std::str
   Head head{};
   std::string text;
   if (file < 0 || !read_head(file, head, text)) return {};
-  const std::size_t size = head.numbers * sizeof(double) + kReason + sizeof(std::uint64_t);
+  const std::size_t size = place_size_of(head.numbers);
   std::string bytes(size, '\0');
   std::uint64_t done = 0;
   for (std::uint64_t block = 0; block < head.blocks; ++block) {
@@ -136,13 +171,19 @@ VariantStore::VariantStore(const std::string& folder, const std::string& descrip
     Head head{{}, description.size(), key_, shape.blocks, shape.numbers};
     std::memcpy(head.magic, kMagic, sizeof head.magic);
     start_ = up_to_page(sizeof head + description.size());
+    end_ = place(shape.blocks);
     Head found{};
     std::string text;
     if (resume && read_head(descriptor_, found, text) && text == description &&
         std::memcmp(&found, &head, sizeof head) == 0) {
-      std::string bytes;
-      for (std::uint64_t block = 0; block < shape.blocks; ++block)
-        if (read(block, bytes)) done_[block] = true, ++count_;
+      std::string bytes, reasons;
+      for (std::uint64_t block = 0; block < shape.blocks; ++block) {
+        if (!read(block, bytes, reasons)) continue;
+        done_[block] = true, ++count_;
+        Tail tail{};
+        std::memcpy(&tail, bytes.data() + bytes.size() - sizeof tail, sizeof tail);
+        end_ = std::max(end_, tail.at + tail.size);
+      }
     } else {
       if (::ftruncate(descriptor_, 0) != 0) fail(path_, errno);
       std::string bytes;
@@ -168,29 +209,35 @@ VariantStore::VariantStore(const std::string& folder, const std::string& descrip
 
 VariantStore::~VariantStore() { ::close(descriptor_); }
 
-std::size_t VariantStore::place_size() const {
-  return shape_.numbers * sizeof(double) + kReason + sizeof(std::uint64_t);
-}
+std::size_t VariantStore::place_size() const { return place_size_of(shape_.numbers); }
 
 std::uint64_t VariantStore::place(std::uint64_t block) const { return start_ + block * place_size(); }
 
-bool VariantStore::read(std::uint64_t block, std::string& bytes) const {
+bool VariantStore::read(std::uint64_t block, std::string& bytes, std::string& reasons) const {
   bytes.resize(place_size());
   if (read_all(descriptor_, bytes.data(), bytes.size(), place(block)) != static_cast<ssize_t>(bytes.size()))
     return false;
-  std::uint64_t sum = 0;
-  const std::size_t rest = bytes.size() - sizeof sum;
-  std::memcpy(&sum, bytes.data() + rest, sizeof sum);
-  return sum != 0 && sum == place_checksum({bytes.data(), rest}, block, key_);
+  Tail tail{};
+  std::memcpy(&tail, bytes.data() + bytes.size() - sizeof tail, sizeof tail);
+  // A block has no more rows than numbers; a torn place may state any length.
+  if (tail.checksum == 0 || tail.size > shape_.numbers * (BlockRows::kReason + 1)) return false;
+  reasons.resize(tail.size);
+  if (read_all(descriptor_, reasons.data(), reasons.size(), tail.at) != static_cast<ssize_t>(reasons.size()))
+    return false;
+  const std::string_view summed(bytes.data(), bytes.size() - sizeof tail.checksum);
+  return tail.checksum == place_checksum(summed, reasons, block, key_);
 }
 
 void VariantStore::put(std::uint64_t block, const BlockRows& rows) {
+  const std::string reasons = reasons_as_bytes(rows.reasons);
+  Tail tail{.at = end_, .size = reasons.size(), .checksum = 0};
+  write_all(descriptor_, path_, reasons, tail.at);
+  end_ += tail.size;
   std::string bytes;
   append(bytes, rows.numbers.data(), rows.numbers.size() * sizeof(double));
-  bytes += rows.reason.substr(0, kReason);
-  bytes.resize(place_size() - sizeof(std::uint64_t), '\0');
-  const std::uint64_t sum = place_checksum(bytes, block, key_);
-  append(bytes, &sum, sizeof sum);
+  append(bytes, &tail, sizeof tail - sizeof tail.checksum);
+  tail.checksum = place_checksum(bytes, reasons, block, key_);
+  append(bytes, &tail.checksum, sizeof tail.checksum);
   write_all(descriptor_, path_, bytes, place(block));
   if (!done_[block]) ++count_;
   done_[block] = true;
@@ -202,13 +249,13 @@ void VariantStore::sync() {
 }
 
 BlockRows VariantStore::get(std::uint64_t block) const {
-  std::string bytes;
-  if (!read(block, bytes)) throw OutputError("cannot read block " + std::to_string(block) + " of " + path_);
+  std::string bytes, reasons;
+  if (!read(block, bytes, reasons))
+    throw OutputError("cannot read block " + std::to_string(block) + " of " + path_);
   BlockRows rows;
   rows.numbers.resize(shape_.numbers);
   std::memcpy(rows.numbers.data(), bytes.data(), shape_.numbers * sizeof(double));
-  const char* reason = bytes.data() + shape_.numbers * sizeof(double);
-  rows.reason.assign(reason, ::strnlen(reason, kReason));
+  rows.reasons = reasons_in(reasons);
   return rows;
 }
 

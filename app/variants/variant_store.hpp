@@ -3,11 +3,12 @@
 /// that counts as done is lost by a killed process, a full disk or a power failure.
 ///
 /// Its head has the study's description as text, with its checksum. After it each block of variants has a
-/// place of its own, of equal length: the numbers of its rows, a reason if a variant failed, and the checksum
-/// of both and of the block's number. A block is done if its checksum is right; a block that was being
-/// written when the process ended is detected by it and computed again. A place is written once. Space for
-/// all blocks is reserved at the start, so that a disk that is too full is reported before anything is
-/// computed.
+/// place of its own, of equal length: the numbers of its rows, where the reasons of its failed variants are,
+/// and the checksum of all this and of the block's number. The reasons follow behind all places, in the order
+/// in which the blocks are stored, since most blocks have none. A block is done if its checksum is right; a
+/// block that was being written when the process ended is detected by it and computed again. A place is
+/// written once. Space for all places is reserved at the start, so that a disk that is too full is reported
+/// before anything is computed.
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -19,8 +20,19 @@ namespace drev::app {
 /// The results of a block of variants.
 struct BlockRows {
   std::vector<double> numbers = {};  ///< numbers of the rows, row after row
-  std::string reason = {};  ///< reason of its first failed variant; empty: none failed. At most kReason bytes
+  /// Why each variant failed, in the order of the rows, empty where it did not; those at the end that did not
+  /// fail may be missing.
+  std::vector<std::string> reasons = {};
+
+  const std::string& reason(std::size_t row) const;
+  /// Enters the reason of a row, cut to kReason bytes.
+  void set_reason(std::size_t row, const std::string& reason);
+  static constexpr std::size_t kReason = 200;
 };
+
+/// The reasons as bytes, each ended by a zero, and back.
+std::string reasons_as_bytes(const std::vector<std::string>& reasons);
+std::vector<std::string> reasons_in(const std::string& bytes);
 
 struct StoreShape {
   std::uint64_t blocks = 0;
@@ -29,8 +41,6 @@ struct StoreShape {
 
 class VariantStore {
  public:
-  static constexpr std::size_t kReason = 200;
-
   /// The description of the study whose store is in the folder; nullopt: there is none that can be resumed.
   static std::optional<std::string> description_in(const std::string& folder);
   /// The number of its blocks that are done, and of all its blocks.
@@ -62,11 +72,12 @@ class VariantStore {
  private:
   std::size_t place_size() const;
   std::uint64_t place(std::uint64_t block) const;
-  bool read(std::uint64_t block, std::string& bytes) const;
+  bool read(std::uint64_t block, std::string& bytes, std::string& reasons) const;
 
   std::string path_;
   StoreShape shape_;
   std::uint64_t start_ = 0;  // position of the first block [bytes]
+  std::uint64_t end_ = 0;    // position behind the last reason [bytes]
   std::uint64_t key_ = 0;    // checksum of the description
   int descriptor_ = -1;
   std::vector<bool> done_;

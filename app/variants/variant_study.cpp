@@ -242,8 +242,7 @@ void VariantStudy::enter(const Built& built, const VariantResult& result, std::s
     status = result.error.empty() ? status_of(result.summary.status) : VariantStatus::failed;
     reason = result.error.empty() ? result.summary.reason : result.error;
   }
-  if (status != VariantStatus::success && rows.reason.empty())
-    rows.reason = reason.empty() ? status_text(status) : reason;
+  if (status != VariantStatus::success) rows.set_reason(place, reason.empty() ? status_text(status) : reason);
   double* row = rows.numbers.data() + place * row_size();
   *row++ = static_cast<double>(status);
   if (status != VariantStatus::success && status != VariantStatus::energy_error) return;

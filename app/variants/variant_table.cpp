@@ -15,7 +15,7 @@ namespace drev::app {
 namespace {
 
 constexpr std::uint64_t kRowsAtOnce = 65536;  // rows in memory at once
-constexpr std::size_t kFailuresTold = 20;     // largest number of failures listed
+constexpr std::size_t kFailuresTold = 20;     // largest number of failures listed as text
 
 }  // namespace
 
@@ -91,18 +91,15 @@ struct Failure {
   std::string reason;
 };
 
-/// The first failed variants, one for each block, with the reason kept in the block.
+/// The first failed variants, up to kFailuresKept.
 std::vector<Failure> failures_of(const VariantStudy& study, const VariantStore& store) {
   std::vector<Failure> all;
-  for (std::uint64_t block = 0; block < study.blocks() && all.size() < kFailuresTold; ++block) {
+  for (std::uint64_t block = 0; block < study.blocks() && all.size() < kFailuresKept; ++block) {
     const BlockRows rows = store.get(block);
-    if (rows.reason.empty()) continue;
-    for (std::uint64_t i = 0; i < study.count_of(block); ++i)
-      if (const double status = rows.numbers[i * study.row_size()]; status != 0.0) {
-        all.push_back(
-            {study.first_of(block) + i, static_cast<VariantStatus>(static_cast<int>(status)), rows.reason});
-        break;
-      }
+    for (std::uint64_t i = 0; i < study.count_of(block) && all.size() < kFailuresKept; ++i)
+      if (const double status = rows.numbers[i * study.row_size()]; status != 0.0)
+        all.push_back({study.first_of(block) + i, static_cast<VariantStatus>(static_cast<int>(status)),
+                       rows.reason(i)});
   }
   return all;
 }
@@ -192,12 +189,15 @@ VariantSummary summary_of(const VariantStudy& study, const VariantStatistics& st
                                                    ? ", eight variants in lockstep"
                                                    : ", one by one: " + study.why_not_lockstep())) +
          "\n" + figures_text(study, statistics) + "\n";
-  for (std::size_t i = 0; i < std::min<std::size_t>(3, failures.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kFailuresTold, failures.size()); ++i)
     text += wrap("variant " + std::to_string(failures[i].variant) + " (" +
                      varied_text(study, failures[i].variant) + "): " + status_text(failures[i].status) +
                      ": " + failures[i].reason,
                  2);
-  if (failures.size() > 3) text += "  more of them in " + folder + "/variants.json\n";
+  if (count - good > kFailuresTold)
+    text += "  " + std::to_string(count - good - kFailuresTold) + " more failed; " + folder +
+            "/variants.json lists " +
+            (count - good > failures.size() ? "the first " + std::to_string(failures.size()) : "all") + "\n";
   text += labelled("table", table_path(folder));
   return summary;
 }

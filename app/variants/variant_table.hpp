@@ -12,6 +12,8 @@
 
 namespace drev::app {
 
+inline constexpr std::size_t kFailuresKept = 1000;  ///< largest number of failures in variants.json
+
 /// The outcome of a study.
 struct VariantSummary {
   Json json;         ///< variants.json, as docs/variants.schema.json describes it

@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 /// The first byte of a message. It is followed, after hello, by the description's checksum and the host;
-/// after found, by a FoundRows, its numbers and reason; after bye, by the reason (empty: it was told to end);
+/// after found, by a FoundRows, its numbers and reasons; after bye, by the reason (empty: it was told to end);
 /// after task, by a BlockTask.
 enum : char { kHello = 'H', kAsk = 'A', kFound = 'F', kBye = 'B', kTask = 'T', kOver = 'O' };
 
@@ -52,7 +52,7 @@ std::string message_of(const FoundBlock& found) {
   std::string bytes = message_of(kFound, FoundRows{found.block, found.rows.numbers.size(), found.seconds});
   bytes.append(reinterpret_cast<const char*>(found.rows.numbers.data()),
                found.rows.numbers.size() * sizeof(double));
-  return bytes + found.rows.reason;
+  return bytes + reasons_as_bytes(found.rows.reasons);
 }
 
 FoundBlock found_in(const std::string& bytes) {
@@ -61,7 +61,7 @@ FoundBlock found_in(const std::string& bytes) {
   found.rows.numbers.resize(head.numbers);
   const char* numbers = bytes.data() + 1 + sizeof head;
   std::memcpy(found.rows.numbers.data(), numbers, head.numbers * sizeof(double));
-  found.rows.reason = bytes.substr(1 + sizeof head + head.numbers * sizeof(double));
+  found.rows.reasons = reasons_in(bytes.substr(1 + sizeof head + head.numbers * sizeof(double)));
   return found;
 }
 

@@ -107,6 +107,18 @@ void bind_commands(nb::module_& module) {
     if (!findings.empty()) throw ModelError(std::move(findings));
     return all;
   });
+  // What is wrong with the runs of all variants; the word of each of them is in --vary.
+  module.def("check_variants", [](const Request& request) {
+    app::CommandLine line = request.line();
+    std::vector<Finding> findings;
+    const std::vector<app::Variant> variants =
+        app::read_variants(line.list("--vary").value_or(std::vector<std::string>{}), findings);
+    if (!findings.empty()) throw ModelError(std::move(findings));
+    line.options.erase("--vary");
+    line.keeps_history = true;       // --record needs no file
+    line.options["--table"] = {""};  // no method by trial, which each run does by itself
+    app::request_variant(line, {variants.size(), [&](std::uint64_t i) { return variants[i].parameters; }});
+  });
   module.def("built_in_models", [] {
     nb::list all;
     for (const ModelEntry& entry : ready_made_models()) all.append(nb::make_tuple(entry.name, entry.summary));

@@ -1,6 +1,8 @@
 // Many variants with a row of figures each (app/variants): the rows of a range of blocks, for Python code
 // that distributes the work.
 #include <limits>
+#include <map>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -22,10 +24,11 @@ using app::VariantStudy;
 
 using GivenRows = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-/// Rows of `count` blocks from `first` on, and for each block the reason of its first failed variant.
+/// Rows of `count` blocks from `first` on, and for each block the reasons of its failed variants
+/// (app::BlockRows).
 struct Rows {
   std::vector<double> numbers;
-  std::vector<std::string> reasons;
+  std::vector<std::vector<std::string>> reasons;
 };
 
 Rows rows_of(const VariantStudy& study, std::uint64_t first, std::uint64_t count, const Stop& stop) {
@@ -36,7 +39,7 @@ Rows rows_of(const VariantStudy& study, std::uint64_t first, std::uint64_t count
     if (!found) break;
     const auto size = static_cast<std::ptrdiff_t>(study.count_of(block) * study.row_size());
     rows.numbers.insert(rows.numbers.end(), found->numbers.begin(), found->numbers.begin() + size);
-    rows.reasons.push_back(found->reason);
+    rows.reasons.push_back(found->reasons);
   }
   return rows;
 }
@@ -65,7 +68,8 @@ class StudyStore {
     return parts;
   }
   /// Stores rows as VariantStudy gives them, from a block on; they are on the disk after sync().
-  void put(std::uint64_t first, const GivenRows& numbers, const std::vector<std::string>& reasons) {
+  void put(std::uint64_t first, const GivenRows& numbers,
+           const std::vector<std::vector<std::string>>& reasons) {
     const double* next = numbers.data();
     const double* end = next + numbers.size();
     for (std::size_t i = 0; i < reasons.size(); ++i) {
@@ -79,6 +83,23 @@ class StudyStore {
   }
   void sync() { store_->sync(); }
   std::string path() const { return app::VariantStore::path_in(folder_); }
+  /// Why variants failed, by their numbers: all that did, or of a table that is complete already those which
+  /// its summary lists.
+  std::map<std::uint64_t, std::string> reasons() const {
+    std::map<std::uint64_t, std::string> all;
+    if (complete_) {
+      const app::Json summary = app::summary_of_table(folder_).value_or(app::Json::object());
+      for (const app::Json& failure : summary.value("failures", app::Json::array()))
+        all.emplace(failure.at("variant"), failure.at("reason"));
+      return all;
+    }
+    for (std::uint64_t block = 0; block < study_.blocks(); ++block) {
+      const std::vector<std::string> of_block = store_->get(block).reasons;
+      for (std::size_t i = 0; i < of_block.size(); ++i)
+        if (!of_block[i].empty()) all.emplace(study_.first_of(block) + i, of_block[i]);
+    }
+    return all;
+  }
   /// All rows, from the store or the table.
   std::vector<double> rows() const {
     std::vector<double> all;
@@ -139,6 +160,7 @@ void bind_study(nb::module_& module) {
       .def("put", &StudyStore::put)
       .def("sync", &StudyStore::sync, nb::call_guard<nb::gil_scoped_release>())
       .def("rows", &StudyStore::rows)
+      .def("reasons", &StudyStore::reasons)
       .def("finish", &StudyStore::finish, nb::call_guard<nb::gil_scoped_release>());
   nb::list names;
   for (int i = 0; i < app::kVariantStatuses; ++i)

@@ -25,7 +25,7 @@ def _request_of(spec):
 
 
 def _rows(spec, first, count, stop=None):
-    """Rows of blocks [first, first + count), their failures, and their computing time [s]. Called by workers."""
+    """Rows of blocks [first, first + count), the reasons of those that failed, and their computing time [s]. Called by workers."""
     began = time.perf_counter()
     if getattr(_known, "spec", None) != spec:
         _known.study, _known.spec = _drev.Study(_request_of(spec)), spec
@@ -35,10 +35,12 @@ def _rows(spec, first, count, stop=None):
 
 class Study:
     """The rows of a study. study["deflection_deg"]: a column; `columns`: every one by its name, parameters first;
-    `units`; `status`: of each variant; `description`: what the rows follow from."""
+    `units`; `status`: of each variant; `reasons`: why variants failed, by their numbers (of a study that was complete
+    already: of the first 1000 that did); `description`: what the rows follow from."""
 
-    def __init__(self, source, numbers):
+    def __init__(self, source, numbers, reasons):
         self.description = json.loads(source.description)
+        self.reasons = reasons
         self.units = dict(source.figures)
         names = [name for name, _ in source.figures]
         table = numbers.reshape(-1, 1 + len(names))
@@ -84,7 +86,7 @@ def compute(case, values, sample, correlate, client, jobs, progress, out, resume
         source = _drev.Study(request)
         store = None if out is None else _drev.StudyStore(source, os.fspath(out), bool(resume))
     if store and store.complete:
-        return Study(source, np.array(store.rows()))
+        return Study(source, np.array(store.rows()), store.reasons())
     stop = _drev.Stop()
     if client is None:
         jobs = jobs or os.cpu_count() or 1
@@ -100,7 +102,7 @@ def compute(case, values, sample, correlate, client, jobs, progress, out, resume
     began = synced = time.monotonic()
     missing = store.missing() if store else [(0, source.blocks)]
     left = sum(count for _, count in missing)
-    parts, waiting, each, done, all_blocks = {}, set(), 1, 0, left
+    parts, failed, waiting, each, done, all_blocks = {}, {}, set(), 1, 0, left
     try:
         while left or waiting:
             while left and len(waiting) < 2 * jobs:
@@ -118,6 +120,8 @@ def compute(case, values, sample, correlate, client, jobs, progress, out, resume
                     store.put(first, numbers, reasons)
                 else:
                     parts[first] = numbers
+                    for block, texts in enumerate(reasons, first):
+                        failed.update({block * source.block_size + i: text for i, text in enumerate(texts) if text})
                 done += len(reasons)
                 each = int(min(4096, max(1, _TASK_SECONDS * len(reasons) / max(seconds, 1e-6))))
             if store and time.monotonic() - synced > _SYNC_SECONDS:
@@ -141,8 +145,8 @@ def compute(case, values, sample, correlate, client, jobs, progress, out, resume
             pool.shutdown(wait=True)
         _progress.close(bar)
     if not store:
-        return Study(source, np.concatenate([parts[first] for first in sorted(parts)]))
+        return Study(source, np.concatenate([parts[first] for first in sorted(parts)]), dict(sorted(failed.items())))
     store.sync()
-    rows = np.array(store.rows())
+    rows, reasons = np.array(store.rows()), store.reasons()
     store.finish()
-    return Study(source, rows)
+    return Study(source, rows, reasons)

@@ -15,7 +15,7 @@ def _word(name, values):
 
 
 class Variant:
-    """One variant: `parameters`, and `run`, or `error` if it failed."""
+    """One variant: `parameters`, `status`, and `run`, or `error` if it failed."""
 
     def __init__(self, parameters):
         self.parameters = parameters
@@ -26,8 +26,18 @@ class Variant:
     def name(self):
         return ",".join(f"{k}={v}" for k, v in self.parameters.items())
 
+    @property
+    def status(self):
+        """How its run ended: run.status, or "bad_input", "output_error", "failed" if there is none; "not_started"."""
+        if self.run is not None:
+            return self.run.status
+        if self.error is None:
+            return "not_started"
+        kinds = ((_errors.ModelError, "bad_input"), (_errors.OutputError, "output_error"))
+        return next((status for kind, status in kinds if isinstance(self.error, kind)), "failed")
+
     def __repr__(self):
-        return f"<drev.Variant {self.name}: {'failed' if self.error else 'not run' if self.run is None else self.run.status}>"
+        return f"<drev.Variant {self.name}: {self.status}>"
 
 
 class Variants(list):
@@ -55,7 +65,8 @@ class Variants(list):
                 variant.run = error.result
 
         if variants:  # A fault that all variants share is reported once.
-            case.set(**variants[0].parameters).check()
+            with case._findings():
+                _drev.check_variants(case._request("run", options, words={"--vary": words}))
         began = time.monotonic()
         with ThreadPoolExecutor(jobs, thread_name_prefix="drev") as pool:
             futures = [pool.submit(compute, variant) for variant in variants]
@@ -89,7 +100,7 @@ class Variants(list):
         rows = []
         for v in self:
             figures = {k: f.value for k, f in v.run.figures.items()} if v.run is not None else {}
-            rows.append({**v.parameters, "status": v.run.status if v.run is not None else "failed", **figures})
+            rows.append({**v.parameters, "status": v.status, **figures})
         return pandas.DataFrame(rows).apply(_numbers)
 
 

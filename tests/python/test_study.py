@@ -37,6 +37,28 @@ def test_what_is_wrong_is_a_model_error():
         drev.load("gear_drive").study({"backlash_m": [1, 2]}, **STEPS)
 
 
+def test_each_variant_has_its_own_status_reason_and_duration(tmp_path):
+    drive = drev.load("gear_drive")
+    study = drive.study({"backlash_mm": [99, 0.1, 20]}, **STEPS)
+    assert list(study.status) == ["bad_input", "success", "bad_input"]
+    assert study.reasons.keys() == {0, 2} and "= 99 mm" in study.reasons[0] and "= 20 mm" in study.reasons[2]
+    for resume in (False, True):  # computed, then from its table
+        stored = drive.study({"backlash_mm": [99, 0.1, 20]}, out=tmp_path, resume=resume, **STEPS)
+        assert stored.reasons == study.reasons
+    with pytest.raises(drev.ModelError, match="= 99 mm"):
+        drive.study({"backlash_mm": [99, 20]}, **STEPS)
+    with pytest.raises(drev.ModelError, match="is the duration of the runs"):
+        drive.study({"duration_s": [0.01, 0.02]}, **STEPS)
+    with pytest.raises(drev.ModelError, match="is the duration of the runs"):
+        drive.vary({"duration_s": [0.01, 0.02]}, **STEPS)
+    assert drive.run(**STEPS).summary["parameters"]["duration_s"] == 0.01
+    runs = drive.vary({"backlash_mm": [99, 0.1, 20]}, **STEPS)
+    assert [v.status for v in runs] == ["bad_input", "success", "bad_input"]
+    assert list(runs.to_pandas()["status"]) == ["bad_input", "success", "bad_input"]
+    with pytest.raises(drev.ModelError, match="= 99 mm"):
+        drive.vary({"backlash_mm": [99, 20]}, **STEPS)
+
+
 def test_dask_gives_the_same_rows():
     distributed = pytest.importorskip("distributed")
     drive = drev.load("gear_drive")
@@ -80,6 +102,8 @@ def test_an_optimum_is_that_of_all_combinations():
     assert found.certain and found.value == study["max_mesh_force_N"].min()
     assert found.parameters["backlash_mm"] == study["backlash_mm"][study["max_mesh_force_N"].argmin()]
     assert "least max_mesh_force_N" in str(found)
+    partly = drive.optimise({"backlash_mm": [0.1, 0.15, 20]}, minimise="max_mesh_force_N", **STEPS)
+    assert not partly.certain and "= 20 mm" in partly.data["failures"][0]["reason"]
     searched = drive.optimise({"backlash_mm": "uniform(0.1,0.2)"}, maximise="max_mesh_force_N", variants=20, **STEPS)
     assert not searched.certain and searched.value >= found.value and searched.data["variants"] <= 20
     with pytest.raises(drev.ModelError, match="did you mean"):

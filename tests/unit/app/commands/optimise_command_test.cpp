@@ -66,7 +66,7 @@ TEST_CASE("The absorber that stops a disc is found by a search", "[once]") {
   CHECK(json.at("variants").get<int>() <= 120);
   CHECK(json == Json::parse(read_file(folder / "r/optimum.json")));
   const std::string tried = read_file(folder / "r/tried.csv");
-  CHECK(tried.starts_with("k_Nm_per_rad,status,disc.angle_rad.max\n"));
+  CHECK(tried.starts_with("k_Nm_per_rad,status,disc.angle_rad.max,reason\n"));
   CHECK(std::count(tried.begin(), tried.end(), '\n') == json.at("variants").get<int>() + 1);
   Words again = words;
   again.insert(again.end(), {"--jobs", "1"});
@@ -95,6 +95,32 @@ TEST_CASE(
   }
   CHECK(json.at("best")[0].at("varied").at("k_Nm_per_rad") == at);
   CHECK(json.at("best")[0].at("value").get<double>() == Approx(most).epsilon(1e-6));
+}
+
+TEST_CASE(
+    "Combinations that failed are stated with their reasons, and the best is certain without them only") {
+  const TemporaryFolder folder;
+  const Words words{"optimise",   "gear_drive",
+                    "--vary",     "backlash_mm=50,0.1,0.2",
+                    "--minimise", "max_mesh_force_N",
+                    "--step",     "2e-5",
+                    "--duration", "0.01",
+                    "--out",      (folder / "r").string()};
+  const auto found = drev_command(words);
+  INFO(found.out << found.err);
+  CHECK(found.exit_code == 0);
+  CHECK(contains(found.out,
+                 "backlash_mm=50: bad_input: gear_drive/settings: backlash_mm = 50 mm, must be 0 to 10"));
+  CHECK(contains(found.out, "among the 2 of 3 combinations that have a figure"));
+  CHECK_FALSE(contains(found.out, "yes"));
+  const Json json = Json::parse(read_file(folder / "r/optimum.json"));
+  CHECK(json.at("without_figure") == 1);
+  REQUIRE(json.at("failures").size() == 1);
+  CHECK(json.at("failures")[0].at("status") == "bad_input");
+  CHECK(json.at("failures")[0].at("varied").at("backlash_mm") == 50.0);
+  CHECK(contains(json.at("failures")[0].at("reason"), "backlash_mm = 50 mm, must be 0 to 10"));
+  CHECK(contains(read_file(folder / "r/tried.csv"),
+                 "50,bad_input,,\"gear_drive/settings: backlash_mm = 50 mm, must"));
 }
 
 TEST_CASE("A search among firing orders and numbers together comes near the best of all orders") {

@@ -172,6 +172,17 @@ TEST_CASE("Only the option that is wrong is blamed") {
   CHECK_FALSE(contains(within.err, "2 faults"));
 }
 
+TEST_CASE("The value of an option that does not exist is no model") {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"run", "camshaft", "--stp", "3"}, {"run", "--stp", "3", "camshaft"}}) {
+    const auto run = drev_command(words);
+    INFO(run.err);
+    CHECK(run.exit_code == 2);
+    CHECK(run.err ==
+          "drev: command line: option = --stp, is no option of drev run; did you mean '--step'?\n");
+  }
+}
+
 TEST_CASE("What is wrong with an option is said once, and beside all other faults") {
   const auto said = [](const std::vector<std::string>& words) {
     const auto run = drev_command(words);

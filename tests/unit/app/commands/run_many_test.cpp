@@ -2,6 +2,7 @@
 #include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -250,6 +251,53 @@ TEST_CASE("Names of runs: in quotes where CSV needs it, refused where no folder 
     CHECK(refused.exit_code == 2);
     CHECK(contains(refused.err, "which no folder of results can have"));
   }
+}
+
+TEST_CASE("The duration that is stated is the one that was run, and cannot be varied beside --duration") {
+  const TemporaryFolder folder;
+  const auto run = drev_command({"run", "two_inertia", "--duration", "0.05", "--json"});
+  const Json result = Json::parse(run.out);
+  CHECK(result.at("parameters").at("duration_s") == 0.05);
+  CHECK(result.at("t_end_s") == 0.05);
+  const std::string text = drev_command({"run", "two_inertia", "--duration", "0.05"}).out;
+  CHECK(contains(std::regex_replace(text, std::regex("\\s+"), " "), "duration_s 0.05"));
+  const auto set =
+      drev_command({"run", "two_inertia", "--set", "duration_s=0.2", "--duration", "0.05", "--json"});
+  CHECK(Json::parse(set.out).at("parameters").at("duration_s") == 0.05);
+  CHECK(contains(drev_command({"run", "two_inertia", "--duration", "1e-10"}).err,
+                 "--duration = 1e-10 s, must be"));
+
+  // A parameter of another name may be the duration, too.
+  write_train(folder / "a.toml", "\"length_s\"");
+  const std::string of_train = read_file(folder / "a.toml"), head = "[parameters]\n";
+  std::ofstream(folder / "a.toml") << std::string(of_train).insert(of_train.find(head) + head.size(),
+                                                                   "length_s = 0.01\n");
+  const std::string out = (folder / "r").string(), file = (folder / "a.toml").string();
+  const std::vector<std::vector<std::string>> varied{{"two_inertia", "--vary", "duration_s=0.1,0.2"},
+                                                     {"two_inertia", "--vary", "duration_s=0.5"},
+                                                     {file, "--vary", "length_s=0.01,0.02"}};
+  for (const std::vector<std::string>& model : varied)
+    for (const bool table : {false, true}) {
+      std::vector<std::string> words{"run"};
+      words.insert(words.end(), model.begin(), model.end());
+      words.insert(words.end(), {"--duration", "0.3", "--step", "1e-4", "--out", out});
+      if (table) words.push_back("--table");
+      const auto refused = drev_command(words);
+      INFO(refused.err);
+      CHECK(refused.exit_code == 2);
+      CHECK(contains(refused.err,
+                     "is the duration of the runs, which --duration gives to all: give one of them"));
+      CHECK_FALSE(std::filesystem::exists(out));
+    }
+}
+
+TEST_CASE("A directory that does not exist has its name among the results") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  const auto run = drev_command({"run", (folder / "trains/").string(), "two_inertia", "--out", out});
+  CHECK(contains(run.err, "trains: bad_input: "));
+  CHECK(run_of(json_file(folder / "r/runs.json"), "trains").at("status") == "bad_input");
+  CHECK(contains(read_file(out + "/runs.csv"), "\ntrains,bad_input,"));
 }
 
 TEST_CASE("Table of several runs that cannot be written: what became of them is told all the same") {

@@ -132,6 +132,81 @@ TEST_CASE(
   CHECK(contains(again.out, "complete already"));
 }
 
+TEST_CASE("Each variant that failed has its own status and reason") {
+  const TemporaryFolder folder;
+  const Words words{"run",
+                    "gear_drive",
+                    "--vary",
+                    "backlash_mm=0.1,0.12,0.14,20,0.2,11",
+                    "--step",
+                    "1e-4",
+                    "--duration",
+                    "0.1",
+                    "--table",
+                    "--out",
+                    (folder / "r").string()};
+  const auto run = drev_command(words);
+  INFO(run.out << run.err);
+  CHECK(run.exit_code == 1);
+  const Json failures = Json::parse(read_file(folder / "r/variants.json")).at("failures");
+  REQUIRE(failures.size() >= 3);
+  const std::vector<std::string> backlashes{"0.1", "0.12", "0.14", "20", "0.2", "11"};
+  std::vector<int> bad;
+  for (const Json& failure : failures) {
+    const int number = failure.at("variant");
+    const std::string status = failure.at("status"), reason = failure.at("reason");
+    const std::string backlash = backlashes[static_cast<std::size_t>(number)];
+    if (status == "bad_input") bad.push_back(number);
+    CHECK(contains(reason, status == "bad_input" ? "backlash_mm = " + backlash + " mm" : "energy balance"));
+    CHECK(contains(run.out, "variant " + std::to_string(number) + " (backlash_mm=" + backlash +
+                                "): " + status + ": " + reason.substr(0, 20)));
+  }
+  CHECK(bad == std::vector<int>{3, 5});
+  CHECK(failures[0].at("variant") == 0);
+  CHECK(failures[0].at("status") == "energy_error");
+}
+
+TEST_CASE("A bad first variant has its place and status among the results, as a later one has") {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "r").string();
+  const auto run = [&](const Words& more) {
+    std::filesystem::remove_all(out);
+    Words words{"run", "gear_drive", "--step", "2e-5", "--duration", "0.01", "--json", "--out", out};
+    words.insert(words.end(), more.begin(), more.end());
+    return drev_command(words);
+  };
+  const auto table = run({"--table", "--vary", "backlash_mm=20,0.1"});
+  INFO(table.err);
+  CHECK(table.exit_code == 2);
+  REQUIRE(std::filesystem::exists(folder / "r/variants.h5"));
+  const Json summary = Json::parse(table.out);
+  CHECK(summary.at("statuses").at("success") == 1);
+  REQUIRE(summary.at("failures").size() == 1);
+  CHECK(summary.at("failures")[0].at("variant") == 0);
+  CHECK(summary.at("failures")[0].at("status") == "bad_input");
+  // Normally distributed: some are below 0.
+  const auto sample = run({"--vary", "backlash_mm=normal(0.15,0.2)", "--sample", "lhs:10"});
+  const Json sampled = Json::parse(sample.out);
+  CHECK(sampled.at("statuses").at("bad_input").get<int>() > 0);
+  CHECK(sampled.at("statuses").at("success").get<int>() > 0);
+  const auto many = run({"--vary", "backlash_mm=20,0.1"});
+  CHECK(many.exit_code == 2);
+  const Json runs = Json::parse(many.out).at("runs");
+  CHECK(runs[0].at("status") == "bad_input");
+  CHECK(runs[1].at("status") == "success");
+  // Where all are bad, or the model is without them, nothing is run.
+  for (const Words& bad : {Words{"--vary", "backlash_mm=20,30"},
+                           Words{"--vary", "backlash_mm=20,0.1", "--set", "engine_rpm=-1"}})
+    for (const bool tabled : {true, false}) {
+      Words words = bad;
+      if (tabled) words.push_back("--table");
+      const auto refused = run(words);
+      CHECK(refused.exit_code == 2);
+      CHECK(contains(refused.err, "backlash_mm = 20 mm, must be 0 to 10"));
+      CHECK_FALSE(std::filesystem::exists(out));
+    }
+}
+
 TEST_CASE("A study's report has its figures, points of the table, and the command that gives it again") {
   const TemporaryFolder folder;
   const std::string page = (folder / "page.html").string();
@@ -219,7 +294,7 @@ TEST_CASE("A study resumed with a changed model is refused by its change, and no
     const Json study = Json::parse(description);
     const std::size_t numbers = (1 + study.at("figures").size()) * study.at("block").get<std::size_t>();
     VariantStore store(out, description, {.blocks = 4, .numbers = numbers}, true);
-    store.put(1, {std::vector<double>(numbers), ""});
+    store.put(1, {.numbers = std::vector<double>(numbers)});
     store.sync();
   }
   const auto careless = drev_command(words);
