@@ -12,6 +12,7 @@
 #include "app/results/run_json.hpp"
 #include "app/results/sweep_result.hpp"
 
+#include "app/run/excitation.hpp"
 namespace drev::app {
 
 namespace {
@@ -351,6 +352,7 @@ std::vector<std::string> excitation_notes(const NonlinearSweepOptions& options, 
                              options.balance));
   }
   return notes;
+  object["reference_shaft"] = text_or_null(reference_node(model.model_case.model));
 }
 
 std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOptions& options,
@@ -359,7 +361,7 @@ std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOpti
   std::string text = name + ": " + wrap(parameters_text(model.parameters), name.size() + 2);
   text += "periodic motions of " + short_digits(sweep.turns, kFigureDigits) + " turns a cycle, " +
           std::to_string(sweep.speeds.size()) + " speeds " + rpm_text(sweep.speeds.front()) + " to " +
-          rpm_text(sweep.speeds.back()) + " rpm\n\n";
+          rpm_text(sweep.speeds.back()) + " rpm " + of_reference(model.model_case.model) + "\n\n";
   if (!sweep.branches.empty()) text += branches_table(sweep) + "\n";
   if (const std::string largest = largest_table(sweep); !largest.empty()) text += largest + "\n";
   if (!sweep.branches.empty()) text += changes_table(sweep) + "\n";

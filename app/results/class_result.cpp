@@ -8,6 +8,7 @@
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/results/run_json.hpp"
+#include "app/run/excitation.hpp"
 
 namespace drev::app {
 
@@ -356,7 +357,8 @@ std::string class_as_text(const std::vector<ClassCase>& cases) {
   std::string text = name + ": " + wrap(parameters_text(request.model.parameters), name.size() + 2);
   text += std::to_string(request.speeds_rpm.size()) + " speeds " +
           short_digits(request.speeds_rpm.front(), kShown) + " to " +
-          short_digits(request.speeds_rpm.back(), kShown) + " rpm" +
+          short_digits(request.speeds_rpm.back(), kShown) + " rpm " +
+          of_reference(request.model.model_case.model) +
           (std::isnan(rated) ? "" : ", rated speed " + short_digits(to_rpm(rated), kShown) + " rpm") + "\n";
   for (const ClassCase& c : cases) {
     text += "\n" + std::string(c.name == "normal" ? "Normal firing" : "Misfire") + ": " +
@@ -379,6 +381,7 @@ Json class_object(const std::vector<ClassCase>& cases, const Json& mass_elastic)
   object["model"] = request.model.entry->name;
   object["contact"] = request.options.close_contacts ? Json("closed") : Json();
   object["rated_rpm"] = number(to_rpm(strength.rated_speed));
+  object["reference_shaft"] = text_or_null(reference_node(request.model.model_case.model));
   object["speeds_rpm"] = request.speeds_rpm;
   object["cases"] = Json::array();
   for (const ClassCase& c : cases) object["cases"].push_back(case_object(c));

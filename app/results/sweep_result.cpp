@@ -9,6 +9,7 @@
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/results/run_json.hpp"
+#include "app/run/excitation.hpp"
 
 namespace drev::app {
 
@@ -223,7 +224,8 @@ std::string sweep_as_text(const SweepRequest& request, const LinearSweep& sweep)
   text += std::to_string(sweep.orders.size()) + " orders " + short_digits(sweep.orders.front(), kDigits) +
           " to " + short_digits(sweep.orders.back(), kDigits) + ", " + std::to_string(sweep.speeds.size()) +
           " speeds " + short_digits(request.speeds_rpm.front(), kDigits) + " to " +
-          short_digits(request.speeds_rpm.back(), kDigits) + " rpm" +
+          short_digits(request.speeds_rpm.back(), kDigits) + " rpm " +
+          of_reference(request.model.model_case.model) +
           (request.options.close_contacts ? ", contacts closed" : "") + "\n\n";
   text += sections_text(request, sweep) + "\n" + criticals_text(sweep);
   const std::vector<std::string> notes = sweep_notes(request, sweep);
@@ -272,6 +274,7 @@ Json sweep_object(const SweepRequest& request, const LinearSweep& sweep) {
   object["left_out"] = std::move(left_out);
   object["note"] = text_or_null(request.model.model_case.note);
   return object;
+  object["reference_shaft"] = text_or_null(reference_node(request.model.model_case.model));
 }
 
 std::string sweep_as_csv(const SweepRequest& request, const LinearSweep& sweep) {

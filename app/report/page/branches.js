@@ -4,6 +4,7 @@
 const page = JSON.parse(document.querySelector("script.run").textContent);
 const result = page.result;
 const span = [result.speeds_rpm[0], result.speeds_rpm.at(-1)];
+const speedOf = page.shaft === "reference shaft" ? "of the reference shaft" : `of ${page.shaft}, the reference shaft`;
 const CURVE_COLORS = ["--c0", "--c1", "--c2", "--c4", "--ink"];
 const STATES = { stable: null, unstable: [5, 4], "not judged": [9, 3, 2, 3] };
 
@@ -41,7 +42,7 @@ function showFigures() {
       "p",
       {},
       `Periodic motions of ${sig(result.cycle_deg / 360)} turns a cycle by harmonic balance, ` +
-        `${result.speeds_rpm.length} speeds ${sig(span[0])} to ${sig(span[1])} rpm. Half range: ` +
+        `${result.speeds_rpm.length} speeds ${sig(span[0])} to ${sig(span[1])} rpm ${speedOf}. Half range: ` +
         "(maximum − minimum)/2 over the cycle. Stable and unstable by Floquet multipliers.",
     ),
     table(

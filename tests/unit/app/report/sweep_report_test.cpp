@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "app/base/text_layout.hpp"
 #include "app/report/report_page.hpp"
 #include "app/report/report_spectra.hpp"
 #include "tests/catch.hpp"
@@ -92,6 +93,33 @@ TEST_CASE("The report of a sweep with contacts holds its branches and limits", "
   const auto refused = drev_command({"report", file, "--out", (folder / "again.html").string()});
   CHECK(refused.exit_code == 2);
   CHECK(contains(refused.err, "is the report of a sweep"));
+}
+
+TEST_CASE("Text, JSON and report name the shaft whose speeds those of a sweep are", "[sweep][report]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "shaft.html").string();
+  // The speed parameter of this model is the engine's, which turns twice as fast as its reference shaft, the held gear.
+  const std::vector<std::string> camshaft{"camshaft", "--set",    "drive=held", "--speeds",
+                                          "300,375",  "--report", file};
+  for (const char* command : {"sweep", "campbell"}) {
+    std::vector<std::string> words = camshaft;
+    words.insert(words.begin(), command);
+    CHECK(contains(drev_command(words).out, "375 rpm of gear, the reference shaft"));
+    CHECK(nlohmann::json::parse(drev::app::blocks_of(read_file(file)).front()).at("shaft") == "gear");
+    words.emplace_back("--json");
+    CHECK(nlohmann::json::parse(drev_command(words).out).at("reference_shaft") == "gear");
+  }
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"sweep", DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml", "--speeds",
+                                 "2400,2500"},
+        std::vector<std::string>{"class", DREV_SOURCE_DIR "/models/genset/genset.toml", "--speeds",
+                                 "1400,1500", "--contact", "closed"}}) {
+    const std::string shaft = words.front() == "sweep" ? "pinion" : "throw_1";
+    CHECK(contains(drev_command(words).out, "rpm of " + shaft + ", the reference shaft"));
+    std::vector<std::string> as_json = words;
+    as_json.emplace_back("--json");
+    CHECK(nlohmann::json::parse(drev_command(as_json).out).at("reference_shaft") == shaft);
+  }
 }
 
 TEST_CASE("Limits of sections stand in the report of a sweep", "[sweep][report]") {
