@@ -29,6 +29,13 @@ const std::string& name_of(const LinearSweep& sweep, int section) {
 
 double largest(const Vector& values) { return values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0.0; }
 
+/// The value with the largest amount, with its sign.
+double farthest(const Vector& values) {
+  Eigen::Index at = 0;
+  if (values.size() > 0) values.cwiseAbs().maxCoeff(&at);
+  return values.size() > 0 ? values[at] : 0.0;
+}
+
 std::string bounded(double value) { return std::isfinite(value) ? digits(value, kDigits) : "unbounded"; }
 
 std::string sections_text(const SweepRequest& request, const LinearSweep& sweep) {
@@ -41,7 +48,7 @@ std::string sections_text(const SweepRequest& request, const LinearSweep& sweep)
     const SweepSection& s = sweep.sections[c];
     const auto section = static_cast<int>(c);
     const SweepLargest half = largest_half_range(sweep, section);
-    const double mean = largest(s.mean) > kRounding * largest_mean ? largest(s.mean) : 0.0;
+    const double mean = largest(s.mean) > kRounding * largest_mean ? farthest(s.mean) : 0.0;
     rows.push_back(
         {s.name, bounded(half.value), digits(to_rpm(half.speed), kDigits), digits(mean, kDigits),
          s.twist_unit.empty() ? "" : bounded(largest_twist(sweep, section).value) + " " + s.twist_unit,

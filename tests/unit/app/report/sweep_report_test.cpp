@@ -122,6 +122,35 @@ TEST_CASE("Text, JSON and report name the shaft whose speeds those of a sweep ar
   }
 }
 
+TEST_CASE("Largest half range, error of a fold and sign of a mean are the same in text, JSON and report",
+          "[sweep][report]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "pair.html").string();
+  std::vector<std::string> words{"sweep",    DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml",
+                                 "--speeds", "1500:100:2500",
+                                 "--report", file};
+  const std::string text = drev_command(words).out;
+  words.emplace_back("--json");
+  const nlohmann::json json = nlohmann::json::parse(drev_command(words).out);
+  const nlohmann::json data = nlohmann::json::parse(drev::app::blocks_of(read_file(file)).front());
+  CHECK(data.at("result").at("largest") == json.at("largest"));
+  CHECK(contains(read_file(file), "result.largest"));  // what the page's table is made from
+  const nlohmann::json& largest = json.at("largest").at(0);
+  CHECK(largest.at("speed_rpm").get<double>() == Approx(1600.0));
+  // The curve is highest beside 1600 rpm, which the grid does not show.
+  CHECK(largest.at("between_half_range").get<double>() > largest.at("half_range").get<double>());
+  CHECK(largest.at("between_rpm").get<double>() > 1600.0);
+  CHECK(largest.at("between_rpm").get<double>() < 1700.0);
+  for (const char* name : {"half_range", "heat_W", "between_half_range"})
+    CHECK(contains(text, drev::app::digits(largest.at(name).get<double>(), 6)));
+  for (const nlohmann::json& change : json.at("changes")) {
+    CHECK(contains(text, " " + drev::app::digits(change.at("error_rpm").get<double>(), 2) + " "));
+    CHECK(change.at("error_rpm").get<double>() >= 1e-10 * change.at("speed_rpm").get<double>());
+  }
+  const std::string means = drev_command({"sweep", kEngineFile, "--speeds", "600:100:2000"}).out;
+  CHECK(contains(means, " -375.000 "));
+}
+
 TEST_CASE("Limits of sections stand in the report of a sweep", "[sweep][report]") {
   const drev::test::TemporaryFolder folder;
   const std::string file = (folder / "limits.html").string();
