@@ -193,6 +193,13 @@ std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSw
   for (const LinearSweep::LeftOut& load : sweep.left_out)
     notes.push_back(load.load + ": " + digits(100.0 * load.share, 3) +
                     " % of what alternates in it (rms) is in none of the orders");
+  if (const LinearSweep::LeftOut& most = sweep.most_left_out; most.share > 0.0)
+    notes.push_back(
+        (sweep.left_out.empty()
+             ? "Up to " + digits(100.0 * most.share, 2) + " % of what alternates in a load (" + most.load +
+                   ", rms) is in none of the orders. That is a part of a load"
+             : "What is in none of the orders is stated as a part of the loads") +
+        ": half ranges may be off by a larger part. A sweep with more '--orders' shows by how much.");
   for (std::size_t c = 0; c < sweep.sections.size() && request.options.close_contacts; ++c) {
     const SweepSection& section = sweep.sections[c];
     Eigen::Index count = 0;
@@ -267,6 +274,7 @@ Json sweep_object(const SweepRequest& request, const LinearSweep& sweep) {
                         {"mean_torques_Nm", number(sweep.unbalanced_scale[f])}});
   for (const LinearSweep::LeftOut& load : sweep.left_out)
     left_out.push_back({{"load", load.load}, {"share", number(load.share)}});
+  object["reference_shaft"] = text_or_null(reference_node(request.model.model_case.model));
   object["speeds_rpm"] = request.speeds_rpm;
   object["orders"] = sweep.orders;
   object["cycle_deg"] = number(to_deg(sweep.cycle));
@@ -279,9 +287,12 @@ Json sweep_object(const SweepRequest& request, const LinearSweep& sweep) {
   object["input_power_W"] = numbers(sweep.input_power);
   object["dissipated_power_W"] = numbers(sweep.dissipated_power);
   object["left_out"] = std::move(left_out);
+  object["most_left_out"] =
+      sweep.most_left_out.share > 0.0
+          ? Json({{"load", sweep.most_left_out.load}, {"share", number(sweep.most_left_out.share)}})
+          : Json();
   object["note"] = text_or_null(request.model.model_case.note);
   return object;
-  object["reference_shaft"] = text_or_null(reference_node(request.model.model_case.model));
 }
 
 std::string sweep_as_csv(const SweepRequest& request, const LinearSweep& sweep) {

@@ -151,6 +151,32 @@ TEST_CASE("Largest half range, error of a fold and sign of a mean are the same i
   CHECK(contains(means, " -375.000 "));
 }
 
+TEST_CASE("What orders leave out is said to be a part of the loads, above and below 0.1 %",
+          "[sweep][report]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "left.html").string();
+  for (const bool many : {false, true}) {
+    std::vector<std::string> words{
+        "sweep",        "camshaft", "--set", "drive=held", "--set",
+        "loads=source", "--speeds", "375",   "--orders",   many ? "1:1:400" : "1:1:20",
+        "--report",     file};
+    const std::string text = drev_command(words).out;
+    words.emplace_back("--json");
+    const nlohmann::json json = nlohmann::json::parse(drev_command(words).out);
+    const nlohmann::json& most = json.at("most_left_out");
+    CHECK(json.at("left_out").empty() == many);
+    CHECK((most.at("share").get<double>() > 1e-3) == !many);
+    CHECK(contains(text, "of what alternates in"));
+    CHECK(contains(text, "half ranges may be off by"));
+    CHECK(contains(read_file(file), "half ranges may be off by a larger part"));
+    // Orders 401 to 800 add 2.0 % to a half range, although less than 0.1 % of each load is in them.
+    if (many) CHECK(contains(text, most.at("load").get<std::string>() + ", rms) is in"));
+  }
+  const nlohmann::json whole =
+      nlohmann::json::parse(drev_command({"sweep", kEngineFile, "--speeds", "600,700", "--json"}).out);
+  CHECK(whole.at("most_left_out").is_null());
+}
+
 TEST_CASE("Limits of sections stand in the report of a sweep", "[sweep][report]") {
   const drev::test::TemporaryFolder folder;
   const std::string file = (folder / "limits.html").string();
