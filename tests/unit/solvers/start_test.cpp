@@ -111,6 +111,8 @@ TEST_CASE("Where harmonic balance finds none, a run settles on the periodic moti
   const FoundStart start = find_start(system, Start::periodic, {.duration = 1.0, .method = method});
   INFO(start.how);
   CHECK(start.how.find("settled (it changes by") != std::string::npos);
+  CHECK(start.by_run);
+  CHECK(start.unsettled().empty());
   Recorder recorder(start.system, {"wheel.angle_rad"}, start.cycle);
   REQUIRE(run_method(start.system, method, {.t_end = 1.5 * start.cycle}, {&recorder}).ok());
   const std::vector<double>& x = recorder.samples(0);

@@ -124,6 +124,26 @@ TEST_CASE("A run that settles but has no whole cycle left says just that") {
                  "the run of 3.4 s does not settle"));
 }
 
+TEST_CASE("A periodic start that no run settles on is no steady state: a warning in text, JSON and report") {
+  // The teeth of the camshaft's drive rattle without ever repeating.
+  const TemporaryFolder folder;
+  const std::string report = (folder / "r.html").string();
+  std::vector<std::string> words{"run",        "camshaft", "--start",  "periodic",
+                                 "--duration", "0.02",     "--report", report};
+  const auto text = drev_command(words);
+  CHECK(text.exit_code == 0);
+  CHECK(contains(unwrapped(text.out), "WARNING: the run does not start in a periodic steady state"));
+  CHECK_FALSE(contains(unwrapped(text.out), "s settled (it changes"));
+  CHECK(contains(read_file(report), "does not start in a periodic steady state"));
+  words.emplace_back("--json");
+  const Json json = Json::parse(drev_command(words).out);
+  REQUIRE(json["warnings"].size() == 1);
+  CHECK(contains(json["warnings"][0].get<std::string>(), "from cycle to cycle at its end"));
+  CHECK(json["results"]["of"]["settled"] == false);
+  CHECK(contains(json["results"]["of"]["start"].get<std::string>(),
+                 "which did not settle on a periodic motion"));
+}
+
 TEST_CASE("What cannot be a start or a settling time is a fault of its place, all at once") {
   const Ran wrong = run_of(disc("8", "start = \"periodc\"\nsettle = \"often\"\n"));
   CHECK(wrong.exit_code == 2);
