@@ -116,7 +116,7 @@ TEST_CASE("A run that settles but has no whole cycle left says just that") {
   CHECK(of["from_s"] == 0.0);
   const std::string reason = of["reason"];
   CHECK(contains(reason, "the run of 3.6 s ends less than one cycle of 0.251327 s after it has settled"));
-  CHECK(contains(reason, "from 3.7052 s on there is a whole cycle"));
+  CHECK(contains(reason, "from 3.70521 s on there is a whole cycle"));
   CHECK_FALSE(contains(reason, "does not settle"));
   CHECK(contains(unwrapped(shorter.text), "ends less than one cycle of 0.251327 s"));
   CHECK(run_of(model, {"--duration", "3.71"}).json["results"]["of"]["settled"] == true);
