@@ -125,11 +125,15 @@ FoundStart settle(const System& system, double cycle, const std::string& why, co
   const double error = std::max(change_of(before.z, after.z), change_of(before.v, after.v));
   std::ostringstream how;
   how.precision(6);
-  how << "in the motion on which a run of " << cycles << " cycles of " << cycle
-      << " s settled (it changes by ";
+  if (error <= kSettledPart)
+    how << "in the motion on which a run of " << cycles << " cycles of " << cycle
+        << " s settled (it changes by ";
+  else
+    how << "at the end of a run of " << cycles << " cycles of " << cycle
+        << " s, which did not settle on a periodic motion (it changes by ";
   how.precision(2);
   how << 100.0 * error << " % from cycle to cycle; " << why << ")";
-  return {system.with_initial(after.z, after.v), how.str(), cycle, error};
+  return {system.with_initial(after.z, after.v), how.str(), cycle, error, true};
 }
 
 FoundStart start_periodic(const System& system, const StartOptions& options) {
@@ -173,6 +177,17 @@ std::optional<Start> start_of(const std::string& name) {
   for (const Start start : kStarts)
     if (name == to_text(start)) return start;
   return std::nullopt;
+}
+
+std::string FoundStart::unsettled() const {
+  if (!by_run || error <= kSettledPart) return {};
+  std::ostringstream text;
+  text.precision(2);
+  text << "the run does not start in a periodic steady state: none was found, and the run that looks for one "
+          "changes by "
+       << 100.0 * error << " % from cycle to cycle at its end, where " << 100.0 * kSettledPart
+       << " % count as settled";
+  return text.str();
 }
 
 std::vector<std::string> start_names() {

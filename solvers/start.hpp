@@ -9,7 +9,8 @@
 ///
 /// Where harmonic balance finds no periodic motion (teeth that rattle), the model is run from its static start for
 /// as long as it takes to settle, in whole cycles, and the state there is taken; how much it still changes from
-/// cycle to cycle is stated as its error. Of a chaotic motion that does not vanish.
+/// cycle to cycle is stated as its error. Of a chaotic motion that does not vanish: the start is no steady state then, and
+/// FoundStart::unsettled() says so.
 ///
 /// The cycle is the first of these in which everything repeats: the one given, 1, 2 and 4 turns of the reference
 /// shaft, the period that all loads' harmonics in time share.
@@ -47,6 +48,10 @@ struct FoundStart {
   /// Of a periodic start: PeriodicResponse::error; of one that a run settled on, the largest change of a deviation
   /// or rate over the last cycle beside the largest of them.
   double error = 0.0;
+  bool by_run = false;  ///< a periodic start taken from a run, since harmonic balance found no motion
+  /// Why a periodic start is no steady state: the run changes by more than kSettledPart from cycle to cycle at its end. A
+  /// sentence without full stop; empty: it is one, or was not asked for.
+  std::string unsettled() const;
 };
 
 /// Throws SolverError with the reason where there is no such state: a part that floats, loads that do not

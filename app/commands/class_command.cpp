@@ -74,6 +74,7 @@ void sweep_contacts(const CommandLine& line, std::vector<ClassCase>& cases) {
           "heat are not known.");
     if (!missing.empty()) c.notes.push_back("No motion was found at " + speeds_text(missing) + ": left out.");
     c.sweep = std::move(worst.sweep);
+    c.judgement.without_motion = missing;
   }
 }
 
@@ -121,7 +122,11 @@ int class_command(const CommandLine& line) {
   watch_signals();
   if (follows_contacts(cases.front().request)) {
     sweep_contacts(line, cases);
-    for (ClassCase& c : cases) c.judgement = judge_sweep(c.sweep, *strength);
+    for (ClassCase& c : cases) {
+      std::vector<double> without = std::move(c.judgement.without_motion);
+      c.judgement = judge_sweep(c.sweep, *strength);
+      c.judgement.without_motion = std::move(without);
+    }
   } else {
     for (ClassCase& c : cases) {
       const System& system = c.request.model.system;

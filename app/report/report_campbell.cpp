@@ -32,10 +32,8 @@ Json shafts_object(const System& system, const std::string& reference) {
 }  // namespace
 
 std::string reference_name(const Model& model) {
-  if (!model.references().empty()) return model.name_of(model.references().front().first);
-  for (const Model::Prescription& p : model.prescriptions())
-    if (p.omega) return model.name_of(p.node);
-  return "reference shaft";
+  const std::string node = reference_node(model);
+  return node.empty() ? "reference shaft" : node;
 }
 
 Json campbell_object(const Model& model, const System& system, const ModeSet& modes, double duration) {

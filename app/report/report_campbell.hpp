@@ -8,7 +8,7 @@
 
 namespace drev::app {
 
-/// Name of the node through which the reference motion was given; "reference shaft" if there is none.
+/// The node of the reference shaft; "reference shaft" if there is none.
 std::string reference_name(const Model& model);
 
 /// Null if no shaft turns, otherwise {shaft, speed: [slowest, fastest of the run, rad/s], orders: [{order,

@@ -9,15 +9,18 @@
 #include "app/base/csv_cell.hpp"
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
+#include "app/results/branches_largest.hpp"
 #include "app/results/run_json.hpp"
 #include "app/results/sweep_result.hpp"
+#include "app/run/excitation.hpp"
 
 namespace drev::app {
 
 namespace {
 
 constexpr int kFigureDigits = 6;
-constexpr int kCurveDigits = 4;     // digits of a speed that a step along the curve gives
+constexpr int kCurveDigits = 4;  // digits of a speed that a step along the curve gives
+constexpr int kErrorDigits = 2;
 constexpr double kNoWidth = 1e-6;   // width of a stable stretch relative to its speed that is rounding [-]
 constexpr double kLeftOver = 1e-9;  // unbalanced mean torque above which it is reported [N m]
 
@@ -81,65 +84,6 @@ std::string branches_table(const NonlinearSweep& sweep) {
   return columns_text(rows);
 }
 
-/// The largest half range of a section at the given speeds, among the motions that a train can have and the runs.
-struct Largest {
-  double half_range = -1.0, speed = 0.0, lowest = 0.0, highest = 0.0, heat = 0.0;
-  int curve = 0;  ///< from 1; 0: a run
-};
-
-Largest largest_at(const NonlinearSweep& sweep, Eigen::Index section) {
-  Largest largest;
-  const auto note = [&largest](const Largest& one) {
-    if (one.half_range > largest.half_range) largest = one;
-  };
-  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
-    for (const SweptMotion& motion : sweep.branches[b].motions)
-      if (motion.asked && (motion.stable || !motion.judged))
-        note({motion.half_range()[section], motion.speed, motion.minimum[section], motion.maximum[section],
-              motion.heat[section], static_cast<int>(b) + 1});
-  for (const SweptRun& run : sweep.runs)
-    if (run.reason.empty())
-      note({0.5 * (run.highest[section] - run.lowest[section]), run.speed, run.lowest[section],
-            run.highest[section], std::nan(""), 0});
-  return largest;
-}
-
-std::string largest_table(const NonlinearSweep& sweep) {
-  std::vector<std::vector<std::string>> rows{
-      {"section", "half range", "at [rpm]", "curve", "lowest", "highest", "heat [W]"}};
-  for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
-    const Largest largest = largest_at(sweep, static_cast<Eigen::Index>(c));
-    if (largest.half_range < 0.0) continue;
-    rows.push_back({sweep.sections[c].name, digits(largest.half_range, kFigureDigits),
-                    rpm_text(largest.speed), largest.curve > 0 ? std::to_string(largest.curve) : "run",
-                    digits(largest.lowest, kFigureDigits), digits(largest.highest, kFigureDigits),
-                    std::isfinite(largest.heat) ? digits(largest.heat, kFigureDigits) : "-"});
-  }
-  return rows.size() > 1 ? columns_text(rows) : std::string();
-}
-
-Json largest_object(const NonlinearSweep& sweep) {
-  Json list = Json::array();
-  for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
-    const Largest largest = largest_at(sweep, static_cast<Eigen::Index>(c));
-    if (largest.half_range < 0.0) continue;
-    list.push_back({{"section", sweep.sections[c].name},
-                    {"half_range", number(largest.half_range)},
-                    {"speed_rpm", number(to_rpm(largest.speed))},
-                    {"branch", largest.curve > 0 ? Json(largest.curve) : Json()},
-                    {"lowest", number(largest.lowest)},
-                    {"highest", number(largest.highest)},
-                    {"heat_W", number(largest.heat)}});
-  }
-  return list;
-}
-
-/// An error bound as the next higher power of ten, since no digit of an error is reliable.
-std::string bound_text(double error, double speed) {
-  if (!std::isfinite(error)) return "unknown";
-  return short_digits(std::pow(10.0, std::ceil(std::log10(std::max(error, 1e-9 * speed)))), 1);
-}
-
 /// Where a curve was left between the speeds, with the multiplier there: near 1, it grows beyond all bounds.
 std::string left_text(const SweptBranch& branch, const NonlinearSweepOptions& options) {
   std::string text;
@@ -163,7 +107,8 @@ std::string changes_table(const NonlinearSweep& sweep) {
       {"at [rpm]", "within [rpm]", "curve", "what", "half range", "jumps to"}};
   for (const SweptChange& change : sweep.changes)
     rows.push_back(
-        {digits(to_rpm(change.speed), 9), bound_text(to_rpm(change.error), to_rpm(change.speed)),
+        {digits(to_rpm(change.speed), 9),
+         std::isfinite(change.error) ? digits(to_rpm(change.error), kErrorDigits) : "unknown",
          std::to_string(change.branch + 1), to_text(change.kind),
          change.motion.maximum.size() > 0 ? digits(change.motion.half_range()[0], kFigureDigits) : "",
          change.jumps_to.size() > 0 ? digits(change.jumps_to[0], kFigureDigits) : ""});
@@ -359,9 +304,9 @@ std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOpti
   std::string text = name + ": " + wrap(parameters_text(model.parameters), name.size() + 2);
   text += "periodic motions of " + short_digits(sweep.turns, kFigureDigits) + " turns a cycle, " +
           std::to_string(sweep.speeds.size()) + " speeds " + rpm_text(sweep.speeds.front()) + " to " +
-          rpm_text(sweep.speeds.back()) + " rpm\n\n";
+          rpm_text(sweep.speeds.back()) + " rpm " + of_reference(model.model_case.model) + "\n\n";
   if (!sweep.branches.empty()) text += branches_table(sweep) + "\n";
-  if (const std::string largest = largest_table(sweep); !largest.empty()) text += largest + "\n";
+  if (const std::string largest = largest_as_text(sweep); !largest.empty()) text += largest + "\n";
   if (!sweep.branches.empty()) text += changes_table(sweep) + "\n";
   for (const std::string& part :
        {runs_table(sweep), notes_text(options, sweep), wrap(model.model_case.note, 0)})
@@ -407,6 +352,7 @@ Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& opt
         {{"node", sweep.floating_parts[f]}, {"left_over_Nm", number(left_over_of(sweep, f).most)}});
   for (const double speed : sweep.speeds) speeds.push_back(number(to_rpm(speed)));
   for (const double speed : sweep.unsolved) unsolved.push_back(number(to_rpm(speed)));
+  object["reference_shaft"] = text_or_null(reference_node(model.model_case.model));
   object["speeds_rpm"] = std::move(speeds);
   object["orders"] = sweep.orders;
   object["cycle_deg"] = number(360.0 * sweep.turns);
@@ -415,7 +361,7 @@ Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& opt
   object["branches"] = std::move(branches);
   object["changes"] = std::move(changes);
   object["runs"] = std::move(runs);
-  object["largest"] = largest_object(sweep);
+  object["largest"] = largest_objects(sweep);
   const NonlinearSweep::Excess& excess = sweep.excess;
   object["excess"] = excess.found ? Json({{"needed", excess.needed > 0 ? Json(excess.needed) : Json()},
                                           {"most", excess.most},

@@ -8,6 +8,7 @@
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/results/run_json.hpp"
+#include "app/run/excitation.hpp"
 
 namespace drev::app {
 
@@ -44,7 +45,8 @@ std::string campbell_as_text(const SweepRequest& request, const LinearSweep& swe
   const std::string& name = request.model.entry->name;
   std::string text = name + ": " + wrap(parameters_text(request.model.parameters), name.size() + 2);
   text += "speeds " + short_digits(request.speeds_rpm.front(), kSignificant) + " to " +
-          short_digits(request.speeds_rpm.back(), kSignificant) + " rpm" +
+          short_digits(request.speeds_rpm.back(), kSignificant) + " rpm " +
+          of_reference(request.model.model_case.model) +
           (request.options.close_contacts ? ", contacts closed" : "") + "\n\n";
   std::vector<std::vector<std::string>> modes{{"mode", "frequency [Hz]", "damping ratio"}};
   for (Eigen::Index m = 0; m < sweep.modes.lambda.rows(); ++m) {
@@ -87,6 +89,7 @@ Json campbell_object(const SweepRequest& request, const LinearSweep& sweep) {
     critical["relative"] = number(relative(sweep, c));
     criticals.push_back(std::move(critical));
   }
+  object["reference_shaft"] = text_or_null(reference_node(request.model.model_case.model));
   object["from_rpm"] = request.speeds_rpm.front();
   object["to_rpm"] = request.speeds_rpm.back();
   object["orders"] = sweep.orders;

@@ -8,6 +8,7 @@
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/results/run_json.hpp"
+#include "app/run/excitation.hpp"
 
 namespace drev::app {
 
@@ -121,6 +122,62 @@ WorstVibration worst_vibration(const ClassCase& c, const SectionJudgement& judge
   return worst;
 }
 
+Json speeds_rpm(const std::vector<double>& speeds) {
+  Json list = Json::array();
+  for (const double speed : speeds) list.push_back(number(to_rpm(speed)));
+  return list;
+}
+
+/// Null: not decided, or neither heat nor a limit of it is known.
+Json heat_exceeds(const SectionJudgement& judged) {
+  if (judged.heat_undecided() || std::isnan(judged.heat)) return {};
+  return judged.heat_exceeds();
+}
+
+/// "at all 2 speeds", "at 3 of 21 speeds, from 1400 to 1500 rpm".
+std::string part_of_speeds(const std::vector<double>& part, std::size_t all) {
+  if (part.size() == all) return all > 1 ? "at all " + std::to_string(all) + " speeds" : "at the only speed";
+  return "at " + std::to_string(part.size()) + " of " + std::to_string(all) + " speeds, " +
+         (part.size() > 1 ? "from " + short_digits(to_rpm(part.front()), 5) + " to " : "") +
+         short_digits(to_rpm(part.back()), 5) + " rpm";
+}
+
+/// Limits that are given but could not be judged: sentences with part, quantity, speeds and reason.
+std::vector<std::string> undecided_texts(const ClassCase& c) {
+  std::vector<std::string> texts;
+  const std::vector<double>& without = c.judgement.without_motion;
+  const std::size_t answered = c.sweep.speeds.size();
+  if (!without.empty())
+    texts.push_back("No limit is judged " + part_of_speeds(without, answered + without.size()) +
+                    ": no motion was found there.");
+  for (const SectionJudgement& j : c.judgement.sections)
+    if (j.heat_undecided())
+      texts.push_back(c.sweep.sections[static_cast<std::size_t>(j.section)].name + ": permissible heat of " +
+                      digits(j.permissible_heat, 4) + " W not judged " +
+                      part_of_speeds(j.heat_unknown, answered) +
+                      ": no periodic motion that was found is stable there, and a run in time does not give "
+                      "the heat.");
+  return texts;
+}
+
+Json accepted_value(const ClassJudgement& judgement) {
+  const ClassJudgement::Verdict verdict = judgement.verdict();
+  return verdict == ClassJudgement::Verdict::undecided ? Json()
+                                                       : Json(verdict == ClassJudgement::Verdict::within);
+}
+
+const char* verdict_text(const ClassJudgement& judgement) {
+  switch (judgement.verdict()) {
+    case ClassJudgement::Verdict::within:
+      return "within all limits that are given";
+    case ClassJudgement::Verdict::exceeded:
+      return "LIMITS EXCEEDED";
+    case ClassJudgement::Verdict::undecided:
+      return "NOT DECIDED: limits that are given could not be judged";
+  }
+  return "";
+}
+
 Json judged_object(const ClassCase& c, const SectionJudgement& judged) {
   const SectionStrength& data = strength_of(c, judged);
   const WorstVibration worst = worst_vibration(c, judged);
@@ -157,7 +214,8 @@ Json judged_object(const ClassCase& c, const SectionJudgement& judged) {
           {"barred_by_rule", std::move(barred)},
           {"heat_W", number(judged.heat)},
           {"heat_at_rpm", number(to_rpm(judged.heat_speed))},
-          {"heat_exceeds", judged.heat_exceeds()},
+          {"heat_exceeds", heat_exceeds(judged)},
+          {"heat_unknown_rpm", speeds_rpm(judged.heat_unknown)},
           {"permissible_heat_W", number(data.permissible_heat)}};
 }
 
@@ -176,7 +234,8 @@ Json case_object(const ClassCase& c) {
           {"parameters", parameters_object(c.request.model.parameters)},
           {"sections", std::move(sections)},
           {"chatter", std::move(chatter)},
-          {"accepted", c.judgement.accepted()},
+          {"accepted", accepted_value(c.judgement)},
+          {"undecided", undecided_texts(c)},
           {"not_judged", c.judgement.not_judged},
           {"notes", c.notes}};
 }
@@ -204,7 +263,9 @@ std::string case_text(const ClassCase& c) {
          j.judged() ? digits(to_rpm(j.utilisation_speed), 5) : "",
          (std::isnan(j.heat) ? "-" : digits(j.heat, 4)) +
              (std::isnan(data.permissible_heat) ? "" : " of " + digits(data.permissible_heat, 4)),
-         by_torque + (j.heat_judged() ? ", permissible heat" : "")});
+         by_torque + (j.heat_judged()      ? ", permissible heat"
+                      : j.heat_undecided() ? ", heat not judged"
+                                           : "")});
     for (const ExceededRange& range : j.exceeded)
       ranges += wrap(s.name + ": exceeded from " + exceeded_text(range), 2);
     for (const RuleBarredRange& b : j.barred) {
@@ -296,12 +357,14 @@ std::string class_as_text(const std::vector<ClassCase>& cases) {
   std::string text = name + ": " + wrap(parameters_text(request.model.parameters), name.size() + 2);
   text += std::to_string(request.speeds_rpm.size()) + " speeds " +
           short_digits(request.speeds_rpm.front(), kShown) + " to " +
-          short_digits(request.speeds_rpm.back(), kShown) + " rpm" +
+          short_digits(request.speeds_rpm.back(), kShown) + " rpm " +
+          of_reference(request.model.model_case.model) +
           (std::isnan(rated) ? "" : ", rated speed " + short_digits(to_rpm(rated), kShown) + " rpm") + "\n";
   for (const ClassCase& c : cases) {
     text += "\n" + std::string(c.name == "normal" ? "Normal firing" : "Misfire") + ": " +
-            (c.judgement.accepted() ? "within all limits that are given\n" : "LIMITS EXCEEDED\n") +
-            case_text(c);
+            verdict_text(c.judgement) + "\n";
+    for (const std::string& undecided : undecided_texts(c)) text += wrap("- " + undecided, 2);
+    text += case_text(c);
   }
   text += "\n";
   for (const std::string& rule : class_rules(*request.model.model_case.strength))
@@ -318,6 +381,7 @@ Json class_object(const std::vector<ClassCase>& cases, const Json& mass_elastic)
   object["model"] = request.model.entry->name;
   object["contact"] = request.options.close_contacts ? Json("closed") : Json();
   object["rated_rpm"] = number(to_rpm(strength.rated_speed));
+  object["reference_shaft"] = text_or_null(reference_node(request.model.model_case.model));
   object["speeds_rpm"] = request.speeds_rpm;
   object["cases"] = Json::array();
   for (const ClassCase& c : cases) object["cases"].push_back(case_object(c));

@@ -9,6 +9,7 @@
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/results/run_json.hpp"
+#include "app/run/excitation.hpp"
 
 namespace drev::app {
 
@@ -28,6 +29,13 @@ const std::string& name_of(const LinearSweep& sweep, int section) {
 
 double largest(const Vector& values) { return values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0.0; }
 
+/// The value with the largest amount, with its sign.
+double farthest(const Vector& values) {
+  Eigen::Index at = 0;
+  if (values.size() > 0) values.cwiseAbs().maxCoeff(&at);
+  return values.size() > 0 ? values[at] : 0.0;
+}
+
 std::string bounded(double value) { return std::isfinite(value) ? digits(value, kDigits) : "unbounded"; }
 
 std::string sections_text(const SweepRequest& request, const LinearSweep& sweep) {
@@ -40,7 +48,7 @@ std::string sections_text(const SweepRequest& request, const LinearSweep& sweep)
     const SweepSection& s = sweep.sections[c];
     const auto section = static_cast<int>(c);
     const SweepLargest half = largest_half_range(sweep, section);
-    const double mean = largest(s.mean) > kRounding * largest_mean ? largest(s.mean) : 0.0;
+    const double mean = largest(s.mean) > kRounding * largest_mean ? farthest(s.mean) : 0.0;
     rows.push_back(
         {s.name, bounded(half.value), digits(to_rpm(half.speed), kDigits), digits(mean, kDigits),
          s.twist_unit.empty() ? "" : bounded(largest_twist(sweep, section).value) + " " + s.twist_unit,
@@ -185,6 +193,13 @@ std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSw
   for (const LinearSweep::LeftOut& load : sweep.left_out)
     notes.push_back(load.load + ": " + digits(100.0 * load.share, 3) +
                     " % of what alternates in it (rms) is in none of the orders");
+  if (const LinearSweep::LeftOut& most = sweep.most_left_out; most.share > 0.0)
+    notes.push_back(
+        (sweep.left_out.empty()
+             ? "Up to " + digits(100.0 * most.share, 2) + " % of what alternates in a load (" + most.load +
+                   ", rms) is in none of the orders. That is a part of a load"
+             : "What is in none of the orders is stated as a part of the loads") +
+        ": half ranges may be off by a larger part. A sweep with more '--orders' shows by how much.");
   for (std::size_t c = 0; c < sweep.sections.size() && request.options.close_contacts; ++c) {
     const SweepSection& section = sweep.sections[c];
     Eigen::Index count = 0;
@@ -223,7 +238,8 @@ std::string sweep_as_text(const SweepRequest& request, const LinearSweep& sweep)
   text += std::to_string(sweep.orders.size()) + " orders " + short_digits(sweep.orders.front(), kDigits) +
           " to " + short_digits(sweep.orders.back(), kDigits) + ", " + std::to_string(sweep.speeds.size()) +
           " speeds " + short_digits(request.speeds_rpm.front(), kDigits) + " to " +
-          short_digits(request.speeds_rpm.back(), kDigits) + " rpm" +
+          short_digits(request.speeds_rpm.back(), kDigits) + " rpm " +
+          of_reference(request.model.model_case.model) +
           (request.options.close_contacts ? ", contacts closed" : "") + "\n\n";
   text += sections_text(request, sweep) + "\n" + criticals_text(sweep);
   const std::vector<std::string> notes = sweep_notes(request, sweep);
@@ -258,6 +274,7 @@ Json sweep_object(const SweepRequest& request, const LinearSweep& sweep) {
                         {"mean_torques_Nm", number(sweep.unbalanced_scale[f])}});
   for (const LinearSweep::LeftOut& load : sweep.left_out)
     left_out.push_back({{"load", load.load}, {"share", number(load.share)}});
+  object["reference_shaft"] = text_or_null(reference_node(request.model.model_case.model));
   object["speeds_rpm"] = request.speeds_rpm;
   object["orders"] = sweep.orders;
   object["cycle_deg"] = number(to_deg(sweep.cycle));
@@ -270,6 +287,10 @@ Json sweep_object(const SweepRequest& request, const LinearSweep& sweep) {
   object["input_power_W"] = numbers(sweep.input_power);
   object["dissipated_power_W"] = numbers(sweep.dissipated_power);
   object["left_out"] = std::move(left_out);
+  object["most_left_out"] =
+      sweep.most_left_out.share > 0.0
+          ? Json({{"load", sweep.most_left_out.load}, {"share", number(sweep.most_left_out.share)}})
+          : Json();
   object["note"] = text_or_null(request.model.model_case.note);
   return object;
 }

@@ -135,4 +135,16 @@ std::vector<double> chief_orders(const std::vector<Crossing>& crossings, const S
   return {shown.begin(), shown.end()};
 }
 
+std::string reference_node(const Model& model) {
+  if (!model.references().empty()) return model.name_of(model.references().front().first);
+  for (const Model::Prescription& p : model.prescriptions())
+    if (p.omega) return model.name_of(p.node);
+  return {};
+}
+
+std::string of_reference(const Model& model) {
+  const std::string node = reference_node(model);
+  return "of " + node + (node.empty() ? "" : ", ") + "the reference shaft";
+}
+
 }  // namespace drev::app

@@ -9,6 +9,7 @@
 ///   q_om = |sum_l x_l A_lo exp(i phase_lo)| / omega_m^2,   x_m' M x_m = 1,
 ///
 /// times the shape's largest entry [rad or m]. At resonance it is 1 / (2 zeta_m) times as large.
+#include <drev/core/model.hpp>
 #include <drev/core/system.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
@@ -31,6 +32,12 @@ std::vector<Crossing> find_crossings(const System& system, const ModeSet& modes,
 /// The node on which the torque acts whose range over two turns of its node is the largest, the first of equal ones; empty:
 /// none has orders.
 std::string driven_node(const System& system);
+
+/// Name of the node through which the reference motion was given: the reference shaft, whose speed the speeds of a sweep are.
+/// Empty: there is none.
+std::string reference_node(const Model& model);
+/// "of gear, the reference shaft", what speeds are of.
+std::string of_reference(const Model& model);
 
 /// Of the reference shaft over the run [rad/s], without sign; zeros where none turns.
 struct SpeedRange {

@@ -23,9 +23,16 @@ FigureSpan figure_span(const std::optional<Settle>& asked, const System& system,
   const Settling settling = settling_time(system);
   span.settled = settling.time + cycle < duration;
   if (span.settled) span.from = settling.time;
-  span.reason = span.settled ? settling.reason
-                             : "the run of " + short_digits(duration, 6) +
-                                   " s does not settle, and figures are of all of it: " + settling.reason;
+  if (span.settled)
+    span.reason = settling.reason;
+  else if (settling.time < duration)
+    span.reason = "the run of " + short_digits(duration, 6) + " s ends less than one cycle of " +
+                  short_digits(cycle, 6) + " s after it has settled, and figures are of all of it (from " +
+                  short_digits(settling.time + cycle, 6) +
+                  " s on there is a whole cycle): " + settling.reason;
+  else
+    span.reason = "the run of " + short_digits(duration, 6) +
+                  " s does not settle, and figures are of all of it: " + settling.reason;
   return span;
 }
 

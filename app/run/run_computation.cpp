@@ -304,6 +304,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
     return result;
   }
   const double duration = model_case.duration;
+  const std::string unsettled = plan.start ? plan.start->unsettled() : "";
   const bool steady = request.start == Start::periodic && plan.start->error <= kSettledPart;
   result.span = figure_span(request.settle, full, steady, duration, cycle_of(request.model));
   result.span.start = plan.start ? plan.start->how : "from the model's initial conditions";
@@ -353,6 +354,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
     result.summary.scheme = result.method.name;
     result.summary.step = result.method.step;
   }
+  if (!unsettled.empty()) result.summary.warnings.push_back(unsettled);
   result.run_time = timer.seconds();
   if (const std::string fault = output_fault(); !fault.empty()) {
     result.status = "output_error";

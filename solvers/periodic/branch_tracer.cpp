@@ -338,6 +338,8 @@ void BranchTracer::find_change(const BranchPoint& from, const BranchPoint& to, B
     event.point = point_at(u);
     if (event.error <= options_.tolerance * speed) break;
   }
+  // The speed is solved for no farther.
+  if (std::isfinite(event.error)) event.error = std::max(event.error, kSolved * event.speed);
   scale_ = scale;
   branch.events.push_back(std::move(event));
   balance_.set_harmonics(from.harmonics);

@@ -131,10 +131,13 @@ void note_left_out(const System& system, const std::vector<OrderContent::Content
                    const OrderContent& content, LinearSweep& sweep) {
   for (std::size_t l = 0; l < content.loads().size(); ++l) {
     const OrderContent::Content& c = found[l];
-    if (!(c.left_out > kLeftOut * c.rms)) continue;
+    if (!(c.left_out > 0.0)) continue;
     const LoadTerm& load = *content.loads()[l];
     const std::string name = system.element_instances()[idx(index(load.element))].name;
-    sweep.left_out.push_back({load.suffix.empty() ? name : name + "_" + load.suffix, c.left_out / c.rms});
+    const LinearSweep::LeftOut left{load.suffix.empty() ? name : name + "_" + load.suffix,
+                                    c.left_out / c.rms};
+    if (left.share > kLeftOut) sweep.left_out.push_back(left);
+    if (left.share > sweep.most_left_out.share) sweep.most_left_out = left;
   }
 }
 

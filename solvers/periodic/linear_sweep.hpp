@@ -137,6 +137,9 @@ struct LinearSweep {
     double share = 0.0;  ///< part of its alternating rms torque that is in no order [-], 0 to 1
   };
   std::vector<LeftOut> left_out;  ///< loads with a share above 0.1 % at the highest speed
+  /// The load with the largest share there, 0: the orders hold all of every load. It is a part of a load: what it would add to a
+  /// half range may be a far larger part, where orders left out meet natural frequencies.
+  LeftOut most_left_out;
 };
 
 /// A value and its speed [rad/s]; not a number: it is not known at any speed.

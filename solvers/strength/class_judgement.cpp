@@ -129,6 +129,8 @@ class Judge {
     const SweepLargest heat = largest_heat(sweep_, curve.section);
     found.heat = heat.value, found.heat_speed = heat.speed;
     found.permissible_heat = data.permissible_heat;
+    for (Eigen::Index i = 0; i < s.heat.size(); ++i)
+      if (std::isnan(s.heat[i])) found.heat_unknown.push_back(sweep_.speeds[static_cast<std::size_t>(i)]);
     return found;
   }
 
@@ -211,9 +213,14 @@ const char* to_text(ExceededRange::Passing passing) {
   return "";
 }
 
-bool ClassJudgement::accepted() const {
-  return std::all_of(sections.begin(), sections.end(),
-                     [](const auto& s) { return s.exceeded.empty() && !s.heat_exceeds(); });
+ClassJudgement::Verdict ClassJudgement::verdict() const {
+  if (std::any_of(sections.begin(), sections.end(),
+                  [](const auto& s) { return !s.exceeded.empty() || s.heat_exceeds(); }))
+    return Verdict::exceeded;
+  const bool undecided =
+      !without_motion.empty() || std::any_of(sections.begin(), sections.end(),
+                                             [](const SectionJudgement& s) { return s.heat_undecided(); });
+  return undecided ? Verdict::undecided : Verdict::within;
 }
 
 TorqueLimit torque_limit(const SectionStrength& s, double speed_ratio) {
@@ -325,7 +332,7 @@ ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength, c
       continue;
     }
     const SectionJudgement& section = found.sections.emplace_back(judge.section(curve));
-    if (section.judged() || section.heat_judged()) judged[static_cast<std::size_t>(section.section)] = true;
+    if (section.judged() || section.heat_limited()) judged[static_cast<std::size_t>(section.section)] = true;
   }
   for (std::size_t c = 0; c < judged.size(); ++c)
     if (!judged[c]) found.not_judged.push_back(sweep.sections[c].name);

@@ -18,6 +18,7 @@
 #include <drev/solvers/periodic/linear_sweep.hpp>
 #include <drev/solvers/strength/section_strength.hpp>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -81,8 +82,12 @@ struct SectionJudgement {
   /// Largest heat [W], and its speed [rad/s]; NaN: it is not known at any speed.
   double heat = std::numeric_limits<double>::quiet_NaN(), heat_speed = heat;
   double permissible_heat = SectionStrength::kNone;  ///< [W]; not a number: no limit
+  std::vector<double> heat_unknown;  ///< speeds of the sweep at which heat is not known [rad/s]
   bool heat_exceeds() const { return heat > permissible_heat; }
-  bool heat_judged() const { return heat <= permissible_heat || heat_exceeds(); }
+  bool heat_limited() const { return !std::isnan(permissible_heat); }
+  /// Whether the limit may be exceeded where heat is not known.
+  bool heat_undecided() const { return heat_limited() && !heat_exceeds() && !heat_unknown.empty(); }
+  bool heat_judged() const { return heat_limited() && !heat_undecided(); }
   bool judged() const { return utilisation > 0.0; }  ///< whether the torque is
 };
 
@@ -98,8 +103,16 @@ struct ClassJudgement {
   std::vector<SectionJudgement> sections;
   std::vector<ChatterRange> chatter;
   std::vector<std::string> not_judged;  ///< names of the sections of the sweep without a limit
-  /// Whether no judged section exceeds its limit in continuous running, of torque or of heat.
-  bool accepted() const;
+  /// Speeds asked for at which no motion is known, so that they are not in the sweep [rad/s]: none, unless who asked states them.
+  std::vector<double> without_motion;
+  /// Of the limits in continuous running, of torque and of heat.
+  enum class Verdict {
+    within,     ///< all that are given are kept at all speeds
+    exceeded,   ///< at least one is exceeded
+    undecided,  ///< none is known to be exceeded, but one could not be judged at some of the speeds
+  };
+  Verdict verdict() const;
+  bool accepted() const { return verdict() == Verdict::within; }
 };
 
 /// Solves the sweep that is judged at other speeds [rad/s], > 0 and ascending: the same sections in the same order.

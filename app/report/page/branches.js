@@ -4,6 +4,7 @@
 const page = JSON.parse(document.querySelector("script.run").textContent);
 const result = page.result;
 const span = [result.speeds_rpm[0], result.speeds_rpm.at(-1)];
+const speedOf = page.shaft === "reference shaft" ? "of the reference shaft" : `of ${page.shaft}, the reference shaft`;
 const CURVE_COLORS = ["--c0", "--c1", "--c2", "--c4", "--ink"];
 const STATES = { stable: null, unstable: [5, 4], "not judged": [9, 3, 2, 3] };
 
@@ -41,7 +42,7 @@ function showFigures() {
       "p",
       {},
       `Periodic motions of ${sig(result.cycle_deg / 360)} turns a cycle by harmonic balance, ` +
-        `${result.speeds_rpm.length} speeds ${sig(span[0])} to ${sig(span[1])} rpm. Half range: ` +
+        `${result.speeds_rpm.length} speeds ${sig(span[0])} to ${sig(span[1])} rpm ${speedOf}. Half range: ` +
         "(maximum − minimum)/2 over the cycle. Stable and unstable by Floquet multipliers.",
     ),
     table(
@@ -58,19 +59,27 @@ function showFigures() {
     ),
     ...page.notes.map((note) => make("p", { class: "note" }, note)),
     make("h3", {}, "Largest half range"),
+    make(
+      "p",
+      { class: "note" },
+      "Of stable motions and runs at the speeds asked for; between them, where a stable curve is higher.",
+    ),
     table(
-      ["section", "half range", "at [rpm]", "curve", "largest heat [W]"],
-      result.sections.map((s, c) => {
-        let most = { value: -1 };
-        result.branches.forEach((curve, b) =>
-          curve.sections[c].half_range.forEach((value, i) => {
-            if (value > most.value) most = { value, speed: curve.speed_rpm[i], curve: b + 1 };
-          }),
-        );
-        const heat = Math.max(0, ...result.branches.map((curve) => largest(curve.sections[c].heat_W)));
-        return most.value < 0
-          ? [s.name, "none found", "", "", ""]
-          : [s.name, quantity(most.value, s.unit), sig(most.speed, 6), most.curve, sig(heat)];
+      ["section", "half range", "at [rpm]", "curve", "lowest", "highest", "heat [W]", "between", "at [rpm]"],
+      result.sections.map((s) => {
+        const most = result.largest.find(({ section }) => section === s.name);
+        if (!most) return [s.name, "none found", "", "", "", "", "", "", ""];
+        return [
+          s.name,
+          quantity(most.half_range, s.unit, 6),
+          sig(most.speed_rpm, 8),
+          most.branch ?? "run",
+          quantity(most.lowest, s.unit, 6),
+          quantity(most.highest, s.unit, 6),
+          sig(most.heat_W, 6),
+          quantity(most.between_half_range, s.unit, 6),
+          sig(most.between_rpm, 8),
+        ];
       }),
     ),
     make("h3", {}, "Folds, jumps and other changes"),

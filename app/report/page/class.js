@@ -4,6 +4,13 @@
 const judged = page.class;
 const caseTitle = (one) => (one.name === "normal" ? "Normal firing" : "One cylinder misfiring");
 
+const verdictText = (one) =>
+  one.accepted === null
+    ? "not decided: limits that are given could not be judged"
+    : one.accepted
+      ? "within all limits that are given"
+      : "limits exceeded";
+
 const passingTexts = {
   permitted: "yes",
   "near rated speed": "no",
@@ -16,7 +23,8 @@ function showJudgement() {
   const section = byId("judgement");
   for (const one of judged.cases) {
     section.append(
-      make("h3", {}, `${caseTitle(one)}: ${one.accepted ? "within all limits that are given" : "limits exceeded"}`),
+      make("h3", {}, `${caseTitle(one)}: ${verdictText(one)}`),
+      ...one.undecided.map((text) => make("p", { class: "warning" }, text)),
       table(
         [
           "section",
@@ -43,7 +51,7 @@ function showJudgement() {
             s.rule === null ? "–" : sig(s.utilisation_at_rpm, 5),
             s.heat_exceeds ? `${heat}, exceeded at ${sig(s.heat_at_rpm, 5)} rpm` : heat,
             (s.rule ?? "torque not judged") +
-              (s.permissible_heat_W === null || s.heat_W === null ? "" : ", permissible heat"),
+              (s.permissible_heat_W === null ? "" : s.heat_exceeds === null ? ", heat not judged" : ", permissible heat"),
           ];
         }),
       ),

@@ -14,6 +14,7 @@ const sweep = page.sweeps[0];
 const span = [sweep.speeds_rpm[0], sweep.speeds_rpm.at(-1)];
 // A single speed is widened to a range, which a chart needs.
 const whole = span[0] < span[1] ? span : [0.99 * span[0], 1.01 * span[1]];
+const speedOf = page.shaft === "reference shaft" ? "of the reference shaft" : `of ${page.shaft}, the reference shaft`;
 const speedAxis = `speed of ${page.shaft} [rpm]`;
 const NAMED_ORDERS = 5;
 const TINTS = ["--c0", "--c1", "--c2", "--c4", "--quiet"];
@@ -40,7 +41,7 @@ function showFigures() {
       "p",
       {},
       `${sweep.orders.length} orders ${sig(sweep.orders[0])} to ${sig(sweep.orders.at(-1))}, ` +
-        `${sweep.speeds_rpm.length} speeds ${sig(span[0])} to ${sig(span[1])} rpm` +
+        `${sweep.speeds_rpm.length} speeds ${sig(span[0])} to ${sig(span[1])} rpm ${speedOf}` +
         `${page.contact ? `, contacts ${page.contact}` : ""}. Half range: (maximum − minimum)/2 of the sum of ` +
         "all orders with their phases over the whole cycle.",
     ),

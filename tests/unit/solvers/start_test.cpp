@@ -90,7 +90,8 @@ TEST_CASE("The period of torques in time is the one that their harmonics share")
   CHECK(std::abs(find_start(m.build(), Start::periodic, {.duration = 1.0}).cycle - 0.2) < 1e-12);
 }
 
-TEST_CASE("Where harmonic balance finds none, a run settles on the periodic motion, and says how well") {
+TEST_CASE(
+    "Where harmonic balance finds none, a run seeks the steady state, and says how far it is from one") {
   // A loose gear that a wheel of changing speed throws from flank to flank.
   Model m("rattle");
   const NodeId motor = m.add_node("motor"), wheel = m.add_node("wheel"), loose = m.add_node("loose");
@@ -110,7 +111,14 @@ TEST_CASE("Where harmonic balance finds none, a run settles on the periodic moti
   const Method method{.name = kExact, .tolerance = 1e-9};
   const FoundStart start = find_start(system, Start::periodic, {.duration = 1.0, .method = method});
   INFO(start.how);
-  CHECK(start.how.find("settled (it changes by") != std::string::npos);
+  CHECK(start.by_run);
+  // It rattles on from cycle to cycle: no steady state, and not called one.
+  REQUIRE(start.error > kSettledPart);
+  CHECK(start.how.find("did not settle on a periodic motion (it changes by") != std::string::npos);
+  CHECK(start.unsettled().find("does not start in a periodic steady state") != std::string::npos);
+  FoundStart settled = start;
+  settled.error = 0.5 * kSettledPart;
+  CHECK(settled.unsettled().empty());
   Recorder recorder(start.system, {"wheel.angle_rad"}, start.cycle);
   REQUIRE(run_method(start.system, method, {.t_end = 1.5 * start.cycle}, {&recorder}).ok());
   const std::vector<double>& x = recorder.samples(0);

@@ -228,6 +228,43 @@ TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fi
   CHECK(refused.exit_code == 2);
 }
 
+TEST_CASE("A limit of heat where only a run in time answers is not decided: text, JSON and report say so",
+          "[class]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "pair.toml")
+      << "format = 1\ninclude = [\"" DREV_SOURCE_DIR
+         "/models/gear_pair/gear_pair.toml\"]\n[nodes]\nmachine = {}\n"
+         "[elements]\nJ_machine = { type = \"inertia\", node = \"machine\", inertia_kg_m2 = 0.02 }\n"
+         "shaft = { type = \"shaft_spring\", nodes = [\"wheel\", \"machine\"], stiffness_Nm_per_rad = 2e6, "
+         "damping_Nms_per_rad = 5 }\n[class.sections]\n"
+         "shaft = { permissible_torque_Nm = 1e6, permissible_heat_W = 50 }\n";
+  const std::string report = (folder / "pair.html").string();
+  // No motion that is found at 2000 rpm is stable, one at 2100 rpm is.
+  const std::vector<std::string> words{"class",    (folder / "pair.toml").string(),
+                                       "--speeds", "2000:100:2100",
+                                       "--set",    "torque_Nm=30",
+                                       "--report", report};
+  const nlohmann::json judged = class_json_of(words);
+  const nlohmann::json& one = judged.at("cases")[0];
+  CHECK(one.at("accepted").is_null());
+  const nlohmann::json& s = one.at("sections")[0];
+  CHECK(s.at("heat_W").get<double>() > 0.0);
+  CHECK(s.at("heat_exceeds").is_null());
+  REQUIRE(s.at("heat_unknown_rpm").size() == 1);
+  CHECK(s.at("heat_unknown_rpm")[0].get<double>() == Approx(2000.0));
+  REQUIRE(one.at("undecided").size() == 1);
+  const std::string why = one.at("undecided")[0];
+  CHECK(contains(why, "shaft.torque_Nm: permissible heat of 50.00 W not judged at 1 of 2 speeds, 2000 rpm"));
+  CHECK(one.at("not_judged") == nlohmann::json{"mesh.force_N"});
+  const auto text = drev_command(words);
+  CHECK(contains(text.out, "Normal firing: NOT DECIDED"));
+  CHECK(contains(text.out, "permissible heat of 50.00 W not judged at 1 of 2 speeds, 2000 rpm"));
+  CHECK(contains(text.out, "permissible torque, heat not judged"));
+  CHECK_FALSE(contains(text.out, "within all limits"));
+  CHECK(page_of(report).at("class") == judged);
+  CHECK(contains(read_file(report), "not decided: limits that are given could not be judged"));
+}
+
 namespace {
 
 /// Two discs on a shaft, with a limit of torque and of heat, written to folder / name.

@@ -8,6 +8,7 @@
 
 using drev::test::contains;
 using drev::test::drev_command;
+using drev::test::read_file;
 using drev::test::TemporaryFolder;
 using Json = nlohmann::json;
 
@@ -103,6 +104,44 @@ TEST_CASE("A run that does not settle says so, and has its figures of the whole 
     CHECK(run.json["results"]["of"]["from_s"] == 0.0);
     CHECK(contains(run.json["results"]["of"]["reason"].get<std::string>(), "the run of 5 s does not settle"));
   }
+}
+
+TEST_CASE("A run that settles but has no whole cycle left says just that") {
+  // It has settled after ln(1000)/2 = 3.45388 s; the cycle, four turns, is 0.251327 s.
+  const std::string model = disc("8", "settle = \"auto\"\nstatic_turn_deg = 1440\n");
+  const Ran shorter = run_of(model, {"--duration", "3.6"});
+  REQUIRE(shorter.exit_code == 0);
+  const Json& of = shorter.json["results"]["of"];
+  CHECK(of["settled"] == false);
+  CHECK(of["from_s"] == 0.0);
+  const std::string reason = of["reason"];
+  CHECK(contains(reason, "the run of 3.6 s ends less than one cycle of 0.251327 s after it has settled"));
+  CHECK(contains(reason, "from 3.70521 s on there is a whole cycle"));
+  CHECK_FALSE(contains(reason, "does not settle"));
+  CHECK(contains(unwrapped(shorter.text), "ends less than one cycle of 0.251327 s"));
+  CHECK(run_of(model, {"--duration", "3.71"}).json["results"]["of"]["settled"] == true);
+  CHECK(contains(run_of(model, {"--duration", "3.4"}).json["results"]["of"]["reason"].get<std::string>(),
+                 "the run of 3.4 s does not settle"));
+}
+
+TEST_CASE("A periodic start that no run settles on is no steady state: a warning in text, JSON and report") {
+  // The teeth of the camshaft's drive rattle without ever repeating.
+  const TemporaryFolder folder;
+  const std::string report = (folder / "r.html").string();
+  std::vector<std::string> words{"run",        "camshaft", "--start",  "periodic",
+                                 "--duration", "0.02",     "--report", report};
+  const auto text = drev_command(words);
+  CHECK(text.exit_code == 0);
+  CHECK(contains(unwrapped(text.out), "WARNING: the run does not start in a periodic steady state"));
+  CHECK_FALSE(contains(unwrapped(text.out), "s settled (it changes"));
+  CHECK(contains(read_file(report), "does not start in a periodic steady state"));
+  words.emplace_back("--json");
+  const Json json = Json::parse(drev_command(words).out);
+  REQUIRE(json["warnings"].size() == 1);
+  CHECK(contains(json["warnings"][0].get<std::string>(), "from cycle to cycle at its end"));
+  CHECK(json["results"]["of"]["settled"] == false);
+  CHECK(contains(json["results"]["of"]["start"].get<std::string>(),
+                 "which did not settle on a periodic motion"));
 }
 
 TEST_CASE("What cannot be a start or a settling time is a fault of its place, all at once") {

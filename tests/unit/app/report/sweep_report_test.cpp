@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "app/base/text_layout.hpp"
 #include "app/report/report_page.hpp"
 #include "app/report/report_spectra.hpp"
 #include "tests/catch.hpp"
@@ -92,6 +93,88 @@ TEST_CASE("The report of a sweep with contacts holds its branches and limits", "
   const auto refused = drev_command({"report", file, "--out", (folder / "again.html").string()});
   CHECK(refused.exit_code == 2);
   CHECK(contains(refused.err, "is the report of a sweep"));
+}
+
+TEST_CASE("Text, JSON and report name the shaft whose speeds those of a sweep are", "[sweep][report]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "shaft.html").string();
+  // The speed parameter of this model is the engine's, which turns twice as fast as its reference shaft, the held gear.
+  const std::vector<std::string> camshaft{"camshaft", "--set",    "drive=held", "--speeds",
+                                          "300,375",  "--report", file};
+  for (const char* command : {"sweep", "campbell"}) {
+    std::vector<std::string> words = camshaft;
+    words.insert(words.begin(), command);
+    CHECK(contains(drev_command(words).out, "375 rpm of gear, the reference shaft"));
+    CHECK(nlohmann::json::parse(drev::app::blocks_of(read_file(file)).front()).at("shaft") == "gear");
+    words.emplace_back("--json");
+    CHECK(nlohmann::json::parse(drev_command(words).out).at("reference_shaft") == "gear");
+  }
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"sweep", DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml", "--speeds",
+                                 "2400,2500"},
+        std::vector<std::string>{"class", DREV_SOURCE_DIR "/models/genset/genset.toml", "--speeds",
+                                 "1400,1500", "--contact", "closed"}}) {
+    const std::string shaft = words.front() == "sweep" ? "pinion" : "throw_1";
+    CHECK(contains(drev_command(words).out, "rpm of " + shaft + ", the reference shaft"));
+    std::vector<std::string> as_json = words;
+    as_json.emplace_back("--json");
+    CHECK(nlohmann::json::parse(drev_command(as_json).out).at("reference_shaft") == shaft);
+  }
+}
+
+TEST_CASE("Largest half range, error of a fold and sign of a mean are the same in text, JSON and report",
+          "[sweep][report]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "pair.html").string();
+  std::vector<std::string> words{"sweep",    DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml",
+                                 "--speeds", "1500:100:2500",
+                                 "--report", file};
+  const std::string text = drev_command(words).out;
+  words.emplace_back("--json");
+  const nlohmann::json json = nlohmann::json::parse(drev_command(words).out);
+  const nlohmann::json data = nlohmann::json::parse(drev::app::blocks_of(read_file(file)).front());
+  CHECK(data.at("result").at("largest") == json.at("largest"));
+  CHECK(contains(read_file(file), "result.largest"));  // what the page's table is made from
+  const nlohmann::json& largest = json.at("largest").at(0);
+  CHECK(largest.at("speed_rpm").get<double>() == Approx(1600.0));
+  // The curve is highest beside 1600 rpm, which the grid does not show.
+  CHECK(largest.at("between_half_range").get<double>() > largest.at("half_range").get<double>());
+  CHECK(largest.at("between_rpm").get<double>() > 1600.0);
+  CHECK(largest.at("between_rpm").get<double>() < 1700.0);
+  for (const char* name : {"half_range", "heat_W", "between_half_range"})
+    CHECK(contains(text, drev::app::digits(largest.at(name).get<double>(), 6)));
+  for (const nlohmann::json& change : json.at("changes")) {
+    CHECK(contains(text, " " + drev::app::digits(change.at("error_rpm").get<double>(), 2) + " "));
+    CHECK(change.at("error_rpm").get<double>() >= 1e-10 * change.at("speed_rpm").get<double>());
+  }
+  const std::string means = drev_command({"sweep", kEngineFile, "--speeds", "600:100:2000"}).out;
+  CHECK(contains(means, " -375.000 "));
+}
+
+TEST_CASE("What orders leave out is said to be a part of the loads, above and below 0.1 %",
+          "[sweep][report]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "left.html").string();
+  for (const bool many : {false, true}) {
+    std::vector<std::string> words{
+        "sweep",        "camshaft", "--set", "drive=held", "--set",
+        "loads=source", "--speeds", "375",   "--orders",   many ? "1:1:400" : "1:1:20",
+        "--report",     file};
+    const std::string text = drev_command(words).out;
+    words.emplace_back("--json");
+    const nlohmann::json json = nlohmann::json::parse(drev_command(words).out);
+    const nlohmann::json& most = json.at("most_left_out");
+    CHECK(json.at("left_out").empty() == many);
+    CHECK((most.at("share").get<double>() > 1e-3) == !many);
+    CHECK(contains(text, "of what alternates in"));
+    CHECK(contains(text, "half ranges may be off by"));
+    CHECK(contains(read_file(file), "half ranges may be off by a larger part"));
+    // Orders 401 to 800 add 2.0 % to a half range, although less than 0.1 % of each load is in them.
+    if (many) CHECK(contains(text, most.at("load").get<std::string>() + ", rms) is in"));
+  }
+  const nlohmann::json whole =
+      nlohmann::json::parse(drev_command({"sweep", kEngineFile, "--speeds", "600,700", "--json"}).out);
+  CHECK(whole.at("most_left_out").is_null());
 }
 
 TEST_CASE("Limits of sections stand in the report of a sweep", "[sweep][report]") {

@@ -136,6 +136,37 @@ TEST_CASE("Chatter: where the vibratory force of a mesh exceeds its mean", "[str
   CHECK(found.accepted());
 }
 
+TEST_CASE("A limit of heat that is known at some speeds only is kept by no train, and may be exceeded",
+          "[strength]") {
+  using Verdict = ClassJudgement::Verdict;
+  LinearSweep sweep = triangle();
+  Strength strength;
+  strength.sections = {shaft_of(0.05)};
+  strength.sections[0].permissible_torque = 5000.0;
+  strength.sections[0].permissible_heat = 50.0;
+  CHECK(judge_sweep(sweep, strength).verdict() == Verdict::within);
+  sweep.sections[0].heat[4] = std::nan("");
+  const ClassJudgement some = judge_sweep(sweep, strength);
+  CHECK(some.sections[0].heat_unknown == std::vector<double>{180.0});
+  CHECK(some.sections[0].heat_undecided());
+  CHECK_FALSE(some.sections[0].heat_judged());
+  CHECK(some.verdict() == Verdict::undecided);
+  CHECK_FALSE(some.accepted());
+  sweep.sections[0].heat.setConstant(std::nan(""));
+  CHECK(judge_sweep(sweep, strength).verdict() == Verdict::undecided);
+  // Heat alone has a limit: the section is not one without.
+  strength.sections[0].permissible_torque = SectionStrength::kNone;
+  CHECK(judge_sweep(sweep, strength).not_judged == std::vector<std::string>{"mesh.force_N"});
+  // Too much at one speed decides, whatever it is at the others; without a limit there is nothing to decide.
+  sweep.sections[0].heat[1] = 51.0;
+  CHECK(judge_sweep(sweep, strength).verdict() == Verdict::exceeded);
+  strength.sections[0].permissible_heat = SectionStrength::kNone;
+  ClassJudgement free = judge_sweep(sweep, strength);
+  CHECK(free.verdict() == Verdict::within);
+  free.without_motion = {220.0};
+  CHECK(free.verdict() == Verdict::undecided);
+}
+
 TEST_CASE("Heat and chatter are judged at the peaks between the speeds, too", "[strength]") {
   LinearSweep sweep = triangle();
   // The mesh's mean is 1,200 N, so that no speed of the grid has a ratio above 1; at 150 rad/s it is 1,500 / 1,200.
