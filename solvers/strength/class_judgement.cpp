@@ -247,8 +247,10 @@ std::vector<Finding> check_strength(const Strength& strength) {
     };
     constexpr double kLeast = 1e-300, kMost = 1e300;
     check("diameter", s.diameter, kLeast, kMost, "m", "> 0");
-    check("bore", s.bore, 0.0, std::isnan(s.diameter) ? 0.0 : std::nextafter(s.diameter, 0.0), "m",
-          "0 <= bore < diameter");
+    // Beside a diameter that is wrong itself, the bore may be right.
+    if (!(s.diameter <= 0.0))
+      check("bore", s.bore, 0.0, std::isnan(s.diameter) ? 0.0 : std::nextafter(s.diameter, 0.0), "m",
+            "0 <= bore < diameter");
     check("stress_concentration", s.stress_concentration, 1.0, kMost, "", ">= 1");
     check("tensile_strength", s.tensile_strength / 1e6, 400.0, 800.0, "MPa",
           "400 to 800 MPa (IACS UR M68.3)");
