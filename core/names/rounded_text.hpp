@@ -2,8 +2,7 @@
 /// Computed values in messages.
 #include <drev/core/error.hpp>
 
-#include <cstdio>
-#include <cstdlib>
+#include <charconv>
 #include <string>
 
 namespace drev {
@@ -11,8 +10,10 @@ namespace drev {
 /// As to_text(), rounded to so many significant digits.
 inline std::string rounded_text(double value, int digits) {
   char text[64];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return to_text(std::strtod(text, nullptr));
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::scientific, digits - 1);
+  double rounded = value;  // stays where it is no number
+  std::from_chars(text, end.ptr, rounded);
+  return to_text(rounded);
 }
 
 }  // namespace drev
