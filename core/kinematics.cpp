@@ -160,6 +160,7 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
                        const std::vector<RatioRow>& speed_ratio_constraints,
                        const std::vector<WideRatioRow>& wide, const std::vector<int>& prescribed,
                        int reference, std::vector<Finding>& findings) {
+  const bool sound = findings.empty();
   const int nodes = static_cast<int>(node_names.size());
   Kinematics k;
   k.component = connected_components(nodes, speed_ratio_constraints, true, true);
@@ -228,11 +229,13 @@ Kinematics find_ratios(const std::string& model, const std::vector<std::string>&
   };
   for (const WideRatioRow* row : solved.contradicting)
     say(*row, "contradict each other: what else ties these nodes does not let the set turn");
+  // What another finding keeps out of the model may be what would tie them.
   for (const WideRatioRow* row : solved.undetermined)
-    say(*row,
-        "do not follow from the reference shaft: hold or ground one of them, tie two (a planetary set free "
-        "on "
-        "all sides has two motions), or say that all three turn alike (together)");
+    if (sound)
+      say(*row,
+          "do not follow from the reference shaft: hold or ground one of them, tie two (a planetary set free "
+          "on "
+          "all sides has two motions), or say that all three turn alike (together)");
   for (int i = 0; i < nodes; ++i)
     k.ratio[idx(i)] = solved.speed[idx(k.component[idx(i)])] * walk.relative[idx(i)];
   for (const RatioRow& row : speed_ratio_constraints)

@@ -172,7 +172,7 @@ std::vector<int> SystemBuilder::floating_parts(const std::vector<double>& relati
 
 void SystemBuilder::check_inertias() {
   const int unknowns = static_cast<int>(system_.unknown_node_.size());
-  if (unknowns == 0 && system_.node_count() > 0)
+  if (unknowns == 0 && system_.node_count() > 0 && faulty_nodes_.empty())
     findings_.push_back(
         {model_.name(), "unknowns", "0", "", "every node is prescribed; nothing is left to compute"});
   if (inertia_in_doubt_) return;

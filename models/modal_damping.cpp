@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/dense/eigenvalues.hpp"
 
@@ -39,7 +40,14 @@ void add_modal_damping(Model& model, const std::string& name, const ModalDamping
   std::vector<Finding> findings;
   ParameterCheck check(model.name() + "/" + name, findings);
   ModalDamping(params, Eigen::MatrixXd::Zero(1, 1)).check(check);
-  const System system = model.build();
+  std::optional<System> built;
+  try {
+    built = model.build();
+  } catch (const ModelError& error) {
+    findings.insert(findings.end(), error.findings().begin(), error.findings().end());
+  }
+  if (!built) throw ModelError(std::move(findings));
+  const System& system = *built;
   const int n = system.size();
   if (n > kMostUnknowns)
     check.fail("unknowns", std::to_string(n), "",

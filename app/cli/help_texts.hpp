@@ -163,8 +163,9 @@ inline constexpr const char* kCheckExamples =
     "  drev check drive.toml --set backlash_mm=0.3\n"
     "\n"
     "Every fault is listed with file, line and column; exit code 2 if there is one. The model is built\n"
-    "for [run] and for each run named in it; --run NAME checks one. docs/model_file.md describes the "
-    "format.\n";
+    "for [run] and for each run named in it; --run NAME checks one. What drev run --out would refuse\n"
+    "before it starts is a fault, too: intervals, and constant steps above the limit of stability.\n"
+    "docs/model_file.md describes the format.\n";
 
 inline constexpr const char* kExportExamples =
     "Examples:\n"

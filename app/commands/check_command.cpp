@@ -33,15 +33,17 @@ std::vector<std::string> run_names(const CommandLine& line) {
 int check_command(const CommandLine& line) {
   std::vector<CommandLine> runs{line};
   std::vector<std::string> names;
-  if (!line.options.contains("--run")) names = run_names(line);
-  for (const std::string& name : names) {
+  const auto asked = line.option("--run");
+  names = run_names(line);
+  for (const std::string& name : asked ? std::vector<std::string>{} : names) {
     runs.push_back(line);
     runs.back().options["--run"] = {name};
   }
   std::size_t nodes = 0, elements = 0;
   std::vector<Finding> findings;
   std::set<std::string> said;
-  for (const CommandLine& run : runs) try {
+  for (CommandLine& run : runs) try {
+      run.keeps_history = true;  // as a run with --out: what it refuses is wrong with the file
       const RunRequest request = request_run(run);
       if (&run != &runs.front()) continue;
       nodes = request.model.model_case.model.node_names().size();

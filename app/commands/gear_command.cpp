@@ -23,10 +23,8 @@ std::vector<GearCase> computed(const std::vector<NamedDrawing>& drawings) {
     try {
       cases.push_back({one.name, one.drawing, gear_mesh_data(one.drawing, one.name)});
     } catch (const ModelError& error) {
-      for (Finding finding : error.findings()) {
-        if (finding.place != one.name) finding.place = one.name + ": " + finding.place;
-        findings.push_back(std::move(finding));
-      }
+      for (const Finding& finding : error.findings())
+        findings.push_back(placed(finding, one.part, one.where));
     }
   }
   if (!findings.empty()) throw ModelError(std::move(findings));

@@ -19,6 +19,7 @@
 #include "app/report/report_file.hpp"
 #include "app/run/excitation.hpp"
 #include "app/run/run_up.hpp"
+#include "solvers/stepping/stability_limit.hpp"
 
 namespace drev::app {
 
@@ -189,6 +190,13 @@ void check_duration(const System& system, const Method& method, double duration,
                           short_digits(digit * std::floor(longest / digit), 2) + " s"});
 }
 
+/// Constant steps that grow without bound. A reduction, which takes the fastest motions away, is run as it is.
+void check_stability(const System& system, const Method& method, std::vector<Finding>& findings) {
+  if (method.exact() || method.controlled()) return;
+  if (const auto why = why_unstable(system, step_scheme(method.name), method.step))
+    findings.push_back({kCommandLine, "--step", to_text(method.step), "s", *why});
+}
+
 /// Options of the file's run that the command line leaves open. Any say on the method there is the whole say.
 void take_file_options(const ModelRequest& model, CommandLine& line) {
   const RunOptions file = model.file->run_options(model.parameters);
@@ -205,6 +213,8 @@ void take_file_options(const ModelRequest& model, CommandLine& line) {
   for (const char* option : {"--start", "--settle", "--out"}) take(option);
   if (const auto at = file.places.find("--duration"); at != file.places.end() && !given("--duration"))
     line.from_file["--duration"] = at->second.text() + ": run";  // the model has the value
+  if (const auto at = file.places.find("--step"); at != file.places.end() && !given("--step"))
+    line.from_file["--step"] = at->second.text() + ": run";
   if (given("--out") || given("--report") || line.keeps_history) take("--every");
 }
 
@@ -307,6 +317,8 @@ RunRequest request_run(const CommandLine& given) {
   const bool any_method =
       !line.option("--method") && !line.option("--step") && !line.option("--tolerance") && !accuracy;
   const std::optional<double> reduce = read_reduce(line, chosen, any_method, findings);
+  if (model && findings.size() == before_method && line.option("--method") && !accuracy && !reduce)
+    check_stability(model->system, chosen, findings);
   const Start start = read_start(line, model ? model->model_case.start : Start::rest, findings);
   const std::optional<Settle> settle =
       read_settle(line, model ? model->model_case.settle : std::nullopt, high, limit, findings);

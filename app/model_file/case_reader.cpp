@@ -4,10 +4,12 @@
 #include <drev/core/control/sampled_controller.hpp>
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
+#include <drev/elements/inertia.hpp>
 #include <drev/models/modal_damping.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/model_file/field_reader.hpp"
 #include "app/model_file/key_finder.hpp"
@@ -24,6 +26,35 @@ constexpr int kMostRepeats = 10000;
 constexpr std::size_t kMostParts = 300000;  // nodes and elements
 // Names are compared with so many at most: suggestions take time.
 constexpr std::size_t kMostCompared = 2000;
+
+/// Stands for an element that has been refused, at its nodes: what they may lack because of it is then no fault of
+/// theirs. Of the element itself, what was read of it is still checked.
+class RefusedElement final : public Element {
+ public:
+  static constexpr const char* kRefused = "refused";  ///< its own finding, which has been said already
+  /// What was read, null: nothing; whether its parameters, and its number of nodes, are those of the file.
+  RefusedElement(std::shared_ptr<const Element> read, bool parameters_read, bool nodes_read)
+      : read_(std::move(read)),
+        parameters_read_(read_ && parameters_read),
+        nodes_read_(read_ && nodes_read) {}
+
+  std::string_view type() const override { return read_ ? read_->type() : "element"; }
+  int min_nodes() const override { return nodes_read_ ? read_->min_nodes() : 0; }
+  int max_nodes() const override {
+    return nodes_read_ ? read_->max_nodes() : std::numeric_limits<int>::max();
+  }
+  void check(ParameterCheck& check) const override {
+    if (parameters_read_) read_->check(check);
+    check.fail(kRefused, "", "", "");
+  }
+  void describe(int /*nodes*/, Terms& /*terms*/) const override {}
+
+ private:
+  std::shared_ptr<const Element> read_;
+  bool parameters_read_, nodes_read_;
+};
+
+const std::string kStandIn = "refused part ";  // begins the names of those that have none of their own
 
 void refuse_entry(ReadContext& context, const Position& at, const std::string& where,
                   const std::string& sentence) {
@@ -50,17 +81,22 @@ void BlockEntries::for_each(const Block& block, const Value& table, const Use& u
       first = read_whole(e->value, -kMostRepeats, kMostRepeats, "repeat.first", context_).value_or(1);
     if (const Entry* e = block.repeat->find("count"))
       count = read_whole(e->value, 0, kMostRepeats, "repeat.count", context_).value_or(1);
+    if (context_.findings.size() > before) all_read_ = false;
     if (said) context_.findings.resize(before);
   }
   for (int i = first; i < first + count; ++i) {
     if (block.repeat != nullptr) context_.scope.numbers[counter] = i;
     for (const Entry& entry : table.entries) {
-      if (too_many_faults()) break;
+      if (too_many_faults()) {
+        all_read_ = false;
+        break;
+      }
       if (read_ >= kMostParts) {
         if (!too_many_)
           refuse_entry(context_, entry.at, entry.key,
                        "a model file may have " + std::to_string(kMostParts) + " nodes and elements at most");
         too_many_ = true;
+        all_read_ = false;
         break;
       }
       try {
@@ -69,6 +105,7 @@ void BlockEntries::for_each(const Block& block, const Value& table, const Use& u
           ++read_, use(entry, expand(entry.key, context_.scope));
       } catch (const ExpressionError& error) {
         refuse_entry(context_, entry.at, entry.key, error.sentence);
+        all_read_ = false;
       }
     }
   }
@@ -116,23 +153,18 @@ class CaseReader {
       if (block.elements != nullptr)
         entries_.for_each(block, *block.elements,
                           [this](const Entry& entry, const std::string& name) { add_element(entry, name); });
-    if (!context_.findings.empty()) {
-      for (const ElementInstance& placement : model_.element_instances()) check_alone(placement);
-      return {};
-    }
-    try {
-      for (const auto& [name, params] : modal_damping_) add_modal_damping(model_, name, params);
-      const System system = model_.build();
-      check_controllers(system);
-      ModelCase model_case{.model = std::move(model_), .note = doc_.note};
-      run.complete(model_case, system, context_);
-      if (doc_.strength != nullptr) read_strength(*doc_.strength, system, model_case, context_);
-      return model_case;
-    } catch (const ModelError& error) {
-      for (Finding& finding : placed(error, doc_.name, doc_.at, nodes_, elements_))
-        context_.findings.push_back(std::move(finding));
-      return {};
-    }
+    // Too little is known of the train: nodes and elements that seem to be missing may be in what was not read.
+    const bool all_read = entries_.all_read() && doc_.whole;
+    if (!all_read && nodes_.empty()) return {};
+    if (!all_read) stand_in({"?"});
+    std::optional<System> system = build_whole();
+    ModelCase model_case{.model = model_, .note = doc_.note};
+    // Channels and sections are looked up in what is sound.
+    if (!system && all_read) system = build_sound(model_case.model);
+    if (!system) return {};
+    run.complete(model_case, *system, left_out_, context_);
+    if (doc_.strength != nullptr) read_strength(*doc_.strength, *system, model_case, left_out_, context_);
+    return model_case;
   }
 
  private:
@@ -150,12 +182,15 @@ class CaseReader {
 
   void add_node(const Entry& entry, const std::string& name) {
     const std::string where = "nodes." + name;
-    if (!is_new(nodes_, entry, where, name)) return;
+    if (!is_new(nodes_, entry, where, name)) return stand_in({name});
     Part& part = nodes_[name];
     part.at = entry.at;
-    if (!entry.value.is(Value::Kind::table))
+    if (!entry.value.is(Value::Kind::table)) {
+      model_.add_node(name, part.kind);
+      stand_in({name});
       return refuse(entry.value.at, where,
                     "must be a table, {} for a plain node, not " + kind_name(entry.value));
+    }
     if (const Entry* kind = entry.value.find("kind"))
       if (kind->value.is(Value::Kind::text) && kind->value.text == "translational")
         part.kind = NodeKind::translational;
@@ -165,6 +200,8 @@ class CaseReader {
             entry.value, where, part.kind, {"when"}, [&](Fields& f) { list_fields(f, p); }, context_,
             &part.fields))
       add_motion(name, p, part);
+    else
+      stand_in({name});
   }
 
   void add_motion(const std::string& name, const NodeParams& p, const Part& part) {
@@ -187,6 +224,7 @@ class CaseReader {
     } catch (const ModelError& error) {
       for (const Finding& finding : error.findings())
         context_.findings.push_back(placed(finding, part, "nodes." + name));
+      stand_in({name});
     }
     if (!std::isnan(p.initial_value) || !std::isnan(p.initial_rate))
       model_.set_initial(name, std::isnan(p.initial_value) ? 0.0 : p.initial_value,
@@ -195,56 +233,83 @@ class CaseReader {
 
   void add_element(const Entry& entry, const std::string& name) {
     const std::string where = "elements." + name;
-    if (!is_new(elements_, entry, where, name)) return;
-    Part& part = elements_[name];
-    part.at = entry.at;
     const Value& table = entry.value;
+    Part part{entry.at};
+    std::vector<std::string> nodes;
+    bool nodes_read = false;
+    if (table.is(Value::Kind::table)) nodes = nodes_of(table, where, part, nodes_read);
+    const std::vector<NodeRef> at(nodes.begin(), nodes.end());
+    if (!is_new(elements_, entry, where, name)) return stand_in(at);
+    Part& kept = elements_[name] = part;
+    std::shared_ptr<const Element> element;
+    bool right = false;
+    const ElementType* type = type_of(table, where);
+    if (type != nullptr) try {
+        element = type->make([&](const ListFields& list) {
+          right = read_fields(table, where, kept.kind, {"type", "node", "nodes", "when"}, list, context_,
+                              &kept.fields);
+        });
+        for (const char* key : {"node", "nodes"})
+          if (const Entry* e = table.find(key)) kept.fields[key] = e->value.at;
+      } catch (const ModelError& error) {
+        for (const Finding& finding : error.findings())
+          context_.findings.push_back(placed(finding, kept, where));
+      }
+    const auto* modal = dynamic_cast<const ModalDamping*>(element.get());
+    if (modal != nullptr && !nodes.empty())
+      refuse(table.at, where, "takes no node: it damps the whole train");
+    if (modal != nullptr) {
+      if (right)
+        modal_damping_.emplace_back(name, modal->params());  // once the train is whole
+      else
+        left_out_.elements.insert(name);
+    } else if (right && nodes_read) {
+      model_.add(name, at, element);
+    } else {
+      left_out_.elements.insert(name);
+      // Where its nodes are not known, any may be its.
+      if (!nodes_read) stand_in({"?"});
+      model_.add(name, at, std::make_shared<const RefusedElement>(element, right, nodes_read));
+    }
+  }
+
+  /// Null, and a finding, where there is none.
+  const ElementType* type_of(const Value& table, const std::string& where) {
+    const Entry* named = nullptr;
     if (!table.is(Value::Kind::table))
-      return refuse(table.at, where, "must be a table, { type = ... }, not " + kind_name(table));
-    const std::vector<std::string> nodes = nodes_of(table, where, part);
-    const Entry* named = table.find("type");
-    if (named == nullptr) return refuse(table.at, where, "lacks type: " + list_of(element_type_names()));
+      refuse(table.at, where, "must be a table, { type = ... }, not " + kind_name(table));
+    else if ((named = table.find("type")) == nullptr)
+      refuse(table.at, where, "lacks type: " + list_of(element_type_names()));
+    if (named == nullptr) return nullptr;
     const ElementType* type =
         named->value.is(Value::Kind::text) ? find_element_type(named->value.text) : nullptr;
     if (type == nullptr) {
       const std::string hint = did_you_mean(named->value.text, element_type_names());
-      return refuse(named->value.at, where + ".type",
-                    "is " + kind_name(named->value) + ", which is no element" +
-                        (hint.empty() ? "; there are " + list_of(element_type_names()) : hint));
+      refuse(named->value.at, where + ".type",
+             "is " + kind_name(named->value) + ", which is no element" +
+                 (hint.empty() ? "; there are " + list_of(element_type_names()) : hint));
     }
-    bool right = false;
-    try {
-      const std::shared_ptr<const Element> element = type->make([&](const ListFields& list) {
-        right = read_fields(table, where, part.kind, {"type", "node", "nodes", "when"}, list, context_,
-                            &part.fields);
-      });
-      for (const char* key : {"node", "nodes"})
-        if (const Entry* e = table.find(key)) part.fields[key] = e->value.at;
-      if (!right) return;
-      if (const auto* modal = dynamic_cast<const ModalDamping*>(element.get())) {
-        if (!nodes.empty()) return refuse(table.at, where, "takes no node: it damps the whole train");
-        modal_damping_.emplace_back(name, modal->params());  // once the train is whole
-      } else {
-        model_.add(name, {nodes.begin(), nodes.end()}, element);
-      }
-    } catch (const ModelError& error) {
-      for (const Finding& finding : error.findings())
-        context_.findings.push_back(placed(finding, part, where));
-    }
+    return type;
   }
 
-  /// Names of an element's nodes, which are looked up; sets the kind of the part.
-  std::vector<std::string> nodes_of(const Value& table, const std::string& where, Part& part) {
+  /// Names of an element's nodes, which are looked up; sets the kind of the part. `all_read`: whether these are the
+  /// nodes that the file says, all of them.
+  std::vector<std::string> nodes_of(const Value& table, const std::string& where, Part& part,
+                                    bool& all_read) {
     const Entry *one = table.find("node"), *several = table.find("nodes");
     if (one != nullptr && several != nullptr)
       refuse(several->at, where + ".nodes", "is given together with node");
+    all_read = one == nullptr || several == nullptr;
     if (one == nullptr && several == nullptr) return {};
     const Entry& given = one != nullptr ? *one : *several;
     std::vector<std::string> names;
     bool kind_known = false;
     const auto look_up = [&](const Value& value) {
       const std::optional<std::string> name = read_text(value, where + "." + given.key, context_);
-      if (!name) return;
+      if (!name) {
+        all_read = false;
+        return;
+      }
       names.push_back(*name);
       const auto node = nodes_.find(*name);
       if (node == nodes_.end()) {
@@ -271,13 +336,82 @@ class CaseReader {
     return names;
   }
 
-  /// Parameters out of range, where the model as a whole cannot be built yet.
-  void check_alone(const ElementInstance& placement) {
-    std::vector<Finding> findings;
-    ParameterCheck check(doc_.name + "/" + placement.name, findings);
-    placement.element->check(check);
-    for (const Finding& finding : findings)
-      context_.findings.push_back(placed(finding, elements_[placement.name], finding.place));
+  /// Something that was refused has to do with these nodes.
+  void stand_in(const std::vector<NodeRef>& nodes) {
+    model_.add(kStandIn + std::to_string(++stand_ins_), nodes,
+               std::make_shared<const RefusedElement>(nullptr, false, false));
+  }
+
+  /// Nothing, and findings, where something is wrong with the train.
+  std::optional<System> build_whole() {
+    Model whole = model_;
+    for (const auto& [name, params] : modal_damping_) try {
+        add_modal_damping(whole, name, params);
+      } catch (const ModelError& error) {
+        left_out_.elements.insert(name);
+        take_findings(error);
+      }
+    try {
+      System system = whole.build();
+      model_ = std::move(whole);
+      check_controllers(system);
+      return system;
+    } catch (const ModelError& error) {
+      take_findings(error);
+      return {};
+    }
+  }
+
+  /// The elements that nothing has been said of, with an inertia at each node: its channels are channels of the whole
+  /// train. What keeps even these from being built leaves more out.
+  std::optional<System> build_sound(Model& sound) {
+    constexpr int kTries = 3;
+    for (int k = 0; k < kTries; ++k) {
+      sound = Model(doc_.name);
+      int inertias = 0;
+      for (const auto& [name, part] : nodes_) {
+        sound.add_node(name, part.kind);
+        sound.add(kStandIn + std::to_string(++inertias), {name},
+                  std::make_shared<const Inertia>(Inertia::Params{1.0}));
+      }
+      for (const ElementInstance& placement : model_.element_instances())
+        if (!left_out_.elements.contains(placement.name) && !placement.name.starts_with(kStandIn))
+          sound.add(placement.name, placement.nodes, placement.element);
+      try {
+        return sound.build();
+      } catch (const ModelError& error) {
+        const std::size_t before = left_out_.elements.size();
+        leave_out(error);
+        if (left_out_.elements.size() == before) break;
+      }
+    }
+    return {};
+  }
+
+  std::string name_in(const Finding& finding) const {
+    const std::string prefix = doc_.name + "/";
+    return finding.place.starts_with(prefix) ? finding.place.substr(prefix.size()) : finding.value;
+  }
+
+  void leave_out(const ModelError& error) {
+    for (const Finding& finding : error.findings())
+      if (const std::string name = name_in(finding); elements_.contains(name))
+        left_out_.elements.insert(name);
+  }
+
+  /// What has not been said when the file was read: of stand-ins, of nodes that are none.
+  void take_findings(const ModelError& error) {
+    std::vector<Finding> fresh;
+    for (const Finding& finding : error.findings()) {
+      const bool no_node = finding.parameter.starts_with("node ") && !nodes_.contains(finding.value);
+      if (finding.parameter != RefusedElement::kRefused && !name_in(finding).starts_with(kStandIn) &&
+          !no_node)
+        fresh.push_back(finding);
+    }
+    leave_out(error);
+    if (fresh.empty()) return;
+    for (Finding& finding : placed(ModelError(std::move(fresh)), doc_.name, doc_.at, nodes_, elements_))
+      context_.findings.push_back(std::move(finding));
   }
 
   const Document& doc_;
@@ -287,6 +421,8 @@ class CaseReader {
   std::map<std::string, Part> nodes_, elements_;
   std::vector<std::string> known_nodes_;
   std::vector<std::pair<std::string, ModalDamping::Params>> modal_damping_;
+  LeftOut left_out_;
+  int stand_ins_ = 0;
 };
 
 }  // namespace

@@ -25,6 +25,8 @@ class BlockEntries {
   explicit BlockEntries(ReadContext& context) : context_(context) {}
   /// Faults go to the context's findings; where there are too many, or too many entries, the rest is left out.
   void for_each(const Block& block, const Value& table, const Use& use);
+  /// False where a fault kept some from being gone through, or left open how many there are.
+  bool all_read() const { return all_read_; }
 
  private:
   bool is_wanted(const Entry& when, const std::string& name);
@@ -33,7 +35,7 @@ class BlockEntries {
   ReadContext& context_;
   std::set<const Block*> seen_;
   std::size_t read_ = 0;
-  bool too_many_ = false;
+  bool too_many_ = false, all_read_ = true;
 };
 
 /// What values of the file are read with.

@@ -72,8 +72,16 @@ class DocumentReader {
                                          "nodes",  "repeat",  "name",       "elements", "summary",
                                          "note",   "run",     "class"};
     for (const Entry& entry : table.entries)
-      if (std::count(known.begin(), known.end(), entry.key) == 0)
+      if (std::count(known.begin(), known.end(), entry.key) == 0) {
         refuse(entry.at, entry.key, "is unknown at the top of a model file" + did_you_mean(entry.key, known));
+        holds_parts(nearest_name(entry.key, known));
+      }
+  }
+
+  /// What is refused would hold, under this key, nodes and elements.
+  void holds_parts(const std::string& key) {
+    for (const char* part : {"nodes", "elements", "repeat", "include"})
+      if (key == part) doc_.whole = false;
   }
 
   /// Lays a section of a file over what included files say in it.
@@ -156,6 +164,7 @@ class DocumentReader {
     if (entry == nullptr) return nullptr;
     if (entry->value.is(Value::Kind::table)) return &entry->value;
     refuse(entry->at, name, "must be a table, [" + std::string(name) + "], not " + kind_name(entry->value));
+    holds_parts(name);
     return nullptr;
   }
 
@@ -169,6 +178,12 @@ class DocumentReader {
   }
 
   void read_includes(const Value& value, const std::string& path, int depth) {
+    const std::size_t before = doc_.findings.size();
+    read_included(value, path, depth);
+    if (doc_.findings.size() > before) holds_parts("include");
+  }
+
+  void read_included(const Value& value, const std::string& path, int depth) {
     std::vector<const Value*> names;
     if (value.is(Value::Kind::array))
       for (const Value& item : value.items) names.push_back(&item);
@@ -334,6 +349,12 @@ class DocumentReader {
   }
 
   void read_repeats(const Value& value) {
+    const std::size_t before = doc_.findings.size();
+    read_each_repeat(value);
+    if (doc_.findings.size() > before) holds_parts("repeat");
+  }
+
+  void read_each_repeat(const Value& value) {
     if (!value.is(Value::Kind::array)) {
       refuse(value.at, "repeat", "must be written [[repeat]], with two brackets");
       return;

@@ -29,6 +29,7 @@ struct Document {
   const Value* run = nullptr;       ///< [run], that of the main file laid over those included
   const Value* strength = nullptr;  ///< [class], likewise
   std::vector<Finding> findings;
+  bool whole = true;             ///< false: nodes or elements may be missing because of a finding
   std::deque<Value> roots = {};  ///< keeps what the pointers above point to
 
   /// Names of the tables inside [run].

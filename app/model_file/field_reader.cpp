@@ -5,6 +5,7 @@
 
 #include "app/model_file/column_reader.hpp"
 #include "app/model_file/key_finder.hpp"
+#include "app/model_file/part.hpp"
 
 namespace drev::app {
 
@@ -112,7 +113,10 @@ class FieldReader final : public Fields {
       blame(*found, "must be a table, { ... }, not " + kind_name(found->entry->value));
       return false;
     }
-    return read_fields(found->entry->value, place(*found), kind, {}, list, context_);
+    FieldPlaces inside;
+    const bool right = read_fields(found->entry->value, place(*found), kind, {}, list, context_, &inside);
+    keep_inside(name, inside);
+    return right;
   }
   bool rows(const std::string& name, std::size_t /*count*/, const std::function<void(std::size_t)>& resize,
             const std::function<void(Fields&, std::size_t)>& list) override {
@@ -128,9 +132,13 @@ class FieldReader final : public Fields {
     for (std::size_t i = 0; i < value.items.size(); ++i) {
       const std::string where = place(*found) + "[" + std::to_string(i + 1) + "]";
       if (value.items[i].is(Value::Kind::table)) {
+        FieldPlaces inside;
         right = read_fields(
-                    value.items[i], where, kind, {}, [&](Fields& f) { list(f, i); }, context_) &&
+                    value.items[i], where, kind, {}, [&](Fields& f) { list(f, i); }, context_, &inside) &&
                 right;
+        const std::string row = name + "[" + std::to_string(i + 1) + "]";
+        inside_[row] = value.items[i].at;
+        keep_inside(row, inside);
       } else {
         context_.findings.push_back(
             fault_at(value.items[i].at, where, "must be a table, { ... }, not " + kind_name(value.items[i])));
@@ -170,13 +178,23 @@ class FieldReader final : public Fields {
       context_.findings.push_back(fault_at(table_.at, where_, sentence));
   }
 
+  void refused(const ModelError& error) override {
+    if (refused_ || context_.findings.size() > before_) return;
+    const Part part{table_.at, places()};
+    for (const Finding& finding : error.findings())
+      context_.findings.push_back(placed(finding, part, where_));
+  }
+
   FieldPlaces places() const {
-    FieldPlaces all;
+    FieldPlaces all = inside_;
     for (const auto& [name, found] : keys_.all()) all[name] = found.entry->at;
     return all;
   }
 
  private:
+  void keep_inside(const std::string& name, const FieldPlaces& inside) {
+    for (const auto& [field, at] : inside) inside_[name + "." + field] = at;
+  }
   std::string place(const Found& found) const { return where_ + "." + found.entry->key; }
   void blame(const Found& found, const std::string& sentence) {
     context_.findings.push_back(fault_at(found.entry->value.at, place(found), sentence));
@@ -187,6 +205,7 @@ class FieldReader final : public Fields {
   ReadContext& context_;
   std::size_t before_;  ///< findings when this reader began
   KeyFinder keys_;
+  FieldPlaces inside_;    ///< of fields of tables inside this one: "geometry.gear_1.teeth"
   bool refused_ = false;  ///< by a finding of an earlier table
 };
 

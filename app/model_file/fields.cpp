@@ -8,9 +8,7 @@ void Fields::guarded(const std::function<void()>& make) {
   try {
     make();
   } catch (const ModelError& error) {
-    std::string all;
-    for (const Finding& finding : error.findings()) all += (all.empty() ? "" : "; ") + finding.text();
-    fault(all);
+    refused(error);
   }
 }
 

@@ -11,7 +11,8 @@
 
 namespace drev {
 class Formula;
-}
+class ModelError;
+}  // namespace drev
 
 namespace drev::app {
 
@@ -79,7 +80,9 @@ class Fields {
                     const std::function<void(Fields&, std::size_t)>& list) = 0;
   /// What is wrong with the table as a whole.
   virtual void fault(const std::string& sentence) = 0;
-  /// Calls make(); what it throws is a fault.
+  /// What a computation from fields refused.
+  virtual void refused(const ModelError& error) = 0;
+  /// Calls make(); what it throws has been refused.
   void guarded(const std::function<void()>& make);
 
   const NodeKind kind;  ///< of the nodes that the fields belong to
@@ -117,6 +120,7 @@ class FieldKeys final : public Fields {
   bool rows(const std::string& name, std::size_t count, const std::function<void(std::size_t)>& resize,
             const std::function<void(Fields&, std::size_t)>& list) override;
   void fault(const std::string&) override {}
+  void refused(const ModelError&) override {}
 
   const std::vector<Key>& keys() const { return keys_; }
   const Key* find(const std::string& name) const;

@@ -1,8 +1,19 @@
 #include "app/model_file/part.hpp"
 
-#include <set>
+#include <drev/elements/not_given.hpp>
+
+#include <algorithm>
 
 namespace drev::app {
+
+bool LeftOut::may_have(const std::string& name) const {
+  const std::string stem = name.substr(0, name.find('*'));
+  const bool pattern = stem.size() < name.size();
+  return std::any_of(elements.begin(), elements.end(), [&](const std::string& element) {
+    return stem == element || stem.starts_with(element + "_") || stem.starts_with(element + ".") ||
+           (pattern && (element.starts_with(stem) || stem.starts_with(element)));
+  });
+}
 
 Finding placed(Finding finding, const Part& part, const std::string& place) {
   // Parameters of the catalogue that go by another name, or by several, in a file.
@@ -26,12 +37,27 @@ Finding placed(Finding finding, const Part& part, const std::string& place) {
   Position best = part.at;
   const auto try_name = [&](const std::string& name) {
     for (const auto& [field, position] : part.fields)
-      if (field.starts_with(name)) best = position;
+      if (field.starts_with(name) && field.find('.') == std::string::npos) best = position;
   };
   const auto [first, last] = renamed.equal_range(stem);
   for (auto other = first; other != last; ++other) try_name(other->second);
   try_name(stem.starts_with("node") ? "node" : stem + "_");
-  if (const auto exact = part.fields.find(stem); exact != part.fields.end()) best = exact->second;
+  const auto exact = part.fields.find(stem);
+  if (exact != part.fields.end()) best = exact->second;
+  // A field of a table inside the part's, whose parameter goes by its own name or by that of the inner table, too; else
+  // the row that it is of.
+  const std::string whole = finding.parameter.ends_with("]")
+                                ? finding.parameter.substr(0, finding.parameter.rfind('['))
+                                : finding.parameter;
+  const bool found = exact != part.fields.end() && whole == stem;
+  for (const std::string& name : {finding.parameter.substr(0, finding.parameter.find(']') + 1), whole})
+    for (const auto& [field, position] : part.fields)
+      if (!found && !name.empty() && (field == name || field.ends_with("." + name))) best = position;
+  // A file cannot say NaN: what has this value, and stands nowhere, was not given.
+  if (finding.value == to_text(kNotGiven) && best.text() == part.at.text()) {
+    finding.value.clear();
+    finding.range = "is missing: " + finding.range;
+  }
   finding.place = best.text() + ": " + place;
   return finding;
 }

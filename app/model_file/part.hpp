@@ -1,6 +1,7 @@
 #pragma once
 /// Where nodes and elements stand, so that what a model says of them can be said of a line of the file.
 #include <map>
+#include <set>
 #include <vector>
 
 #include "app/model_file/field_reader.hpp"
@@ -12,6 +13,13 @@ struct Part {
   Position at;
   FieldPlaces fields = {};
   NodeKind kind = NodeKind::rotational;
+};
+
+/// Elements that a system lacks because something is wrong with them, or was not read of them.
+struct LeftOut {
+  std::set<std::string> elements;
+  /// Whether a name, or one that fits this pattern, may be of such an element: its own, or that of a part of it.
+  bool may_have(const std::string& name) const;
 };
 
 /// The finding with its place in the file, which is that of the field that its parameter is of:

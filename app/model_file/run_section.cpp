@@ -96,6 +96,14 @@ RunSection::RunSection(const Document& document, const std::string& run, ReadCon
   };
   positive("duration", params_.duration);
   positive("step", params_.step);
+  const auto refuse = [&](const char* key, const char* sentence) {
+    if (const Entry* e = entry(key))
+      context.findings.push_back(fault_at(e->value.at, "run." + e->key, sentence));
+  };
+  if (params_.static_turn < 0.0) refuse("static_turn", "must be >= 0; 0: no static torque is sought");
+  if (const Entry* out = entry("out");
+      out != nullptr && out->value.is(Value::Kind::text) && out->value.text.empty())
+    refuse("out", "must be the name of a folder, not empty");
 }
 
 const Entry* RunSection::entry(const std::string& key) const {
@@ -121,12 +129,14 @@ RunOptions RunSection::options() const {
   add("settle", settle != nullptr && settle->key == "settle" ? params_.settle : number(params_.settle_time));
   add("every", number(params_.every));
   add("out", params_.out);
-  if (const Entry* duration = entry("duration")) options.places["--duration"] = duration->value.at;
+  for (const char* key : {"duration", "step"})
+    if (const Entry* e = entry(key)) options.places[std::string("--") + key] = e->value.at;
   return options;
 }
 
 std::vector<std::string> RunSection::channels(const std::string& key, const std::vector<std::string>& asked,
-                                              const System& system, ReadContext& context) const {
+                                              const System& system, const LeftOut& left_out,
+                                              ReadContext& context) const {
   const Entry* given = entry(key);
   const auto place = [&](std::size_t i) {
     const Value& value = given->value;
@@ -141,6 +151,7 @@ std::vector<std::string> RunSection::channels(const std::string& key, const std:
       found.push_back(channel.name());
   } catch (const ModelError& error) {
     for (Finding finding : error.findings()) {
+      if (left_out.may_have(finding.value)) continue;
       finding.place = place(origin[finding.value]).text() + ": run." + key;
       context.findings.push_back(std::move(finding));
     }
@@ -161,7 +172,8 @@ void RunSection::set_span(ModelCase& model_case) const {
   }
 }
 
-void RunSection::complete(ModelCase& model_case, const System& system, ReadContext& context) const {
+void RunSection::complete(ModelCase& model_case, const System& system, const LeftOut& left_out,
+                          ReadContext& context) const {
   model_case.duration = params_.duration;
   set_span(model_case);
   model_case.default_step = params_.step;
@@ -171,13 +183,13 @@ void RunSection::complete(ModelCase& model_case, const System& system, ReadConte
       context.findings.push_back(
           fault_at(entry("deflection")->value.at, "run.deflection", "must be one channel, without '*'"));
     else
-      channels("deflection", {params_.deflection}, system, context);
+      channels("deflection", {params_.deflection}, system, left_out, context);
     model_case.deflection = params_.deflection;
   }
   model_case.torques =
-      entry("torques") ? channels("torques", params_.torques, system, context) : carried(system);
+      entry("torques") ? channels("torques", params_.torques, system, left_out, context) : carried(system);
   model_case.channels =
-      entry("record") ? channels("record", params_.record, system, context) : node_motions(system);
+      entry("record") ? channels("record", params_.record, system, left_out, context) : node_motions(system);
 }
 
 }  // namespace drev::app

@@ -3,7 +3,7 @@
 #include <drev/core/system.hpp>
 
 #include "app/model_file/case_reader.hpp"
-#include "app/model_file/field_reader.hpp"
+#include "app/model_file/part.hpp"
 
 namespace drev::app {
 
@@ -13,8 +13,10 @@ class RunSection {
   RunSection(const Document& document, const std::string& run, ReadContext& context);
 
   RunOptions options() const;
-  /// What the runs of the model need to know. Channels that do not exist are findings.
-  void complete(ModelCase& model_case, const System& system, ReadContext& context) const;
+  /// What the runs of the model need to know. Channels that do not exist are findings, unless they may be of what the
+  /// system leaves out.
+  void complete(ModelCase& model_case, const System& system, const LeftOut& left_out,
+                ReadContext& context) const;
 
  private:
   void set_span(ModelCase& model_case) const;
@@ -29,7 +31,8 @@ class RunSection {
   /// The last entry of the key, with or without a unit; null if there is none.
   const Entry* entry(const std::string& key) const;
   std::vector<std::string> channels(const std::string& key, const std::vector<std::string>& asked,
-                                    const System& system, ReadContext& context) const;
+                                    const System& system, const LeftOut& left_out,
+                                    ReadContext& context) const;
 
   std::vector<const Value*> tables_;  ///< [run], then the named run
   Params params_;

@@ -86,11 +86,12 @@ void list_section(Fields& f, SectionStrength& s) {
   f.number({"sn_slope", D::none}, s.sn.slope);
 }
 
-void read_strength(const Value& table, const System& system, ModelCase& model_case, ReadContext& context) {
+void read_strength(const Value& table, const System& system, ModelCase& model_case, const LeftOut& left_out,
+                   ReadContext& context) {
   Strength strength;
-  const std::size_t before = context.findings.size();
+  std::vector<SectionStrength> of_none;  // sections whose element is not known
   Part whole{table.at};
-  read_fields(
+  const bool whole_read = read_fields(
       table, "class", NodeKind::rotational, {"sections", "misfire"},
       [&](Fields& f) {
         f.number({"rated_speed", D::angular_speed}, strength.rated_speed);
@@ -112,7 +113,7 @@ void read_strength(const Value& table, const System& system, ModelCase& model_ca
       }
       SectionStrength section;
       Part part{entry.at};
-      read_fields(
+      const bool read = read_fields(
           entry.value, where, NodeKind::rotational, {}, [&](Fields& f) { list_section(f, section); }, context,
           &part.fields);
       bool fits = false;
@@ -123,22 +124,35 @@ void read_strength(const Value& table, const System& system, ModelCase& model_ca
         SectionStrength own = section;
         if (const std::string why = take_from_contour(model_case.model, name, own); !why.empty())
           context.findings.push_back(fault_at(entry.at, where, why));
+        if (!read) continue;
         places[name] = part;
         // What is said of one element alone counts beside what is said of many.
         std::erase_if(strength.sections, [&](const auto& other) { return other.element == name; });
         strength.sections.push_back(own);
       }
-      if (!fits)
+      if (!fits && read) {
+        places[entry.key] = part;
+        section.element = entry.key;
+        of_none.push_back(section);
+      }
+      if (!fits && !left_out.may_have(entry.key))
         context.findings.push_back(fault_at(
             entry.at, where, "is the name of no element with a torque" + did_you_mean(entry.key, known)));
     }
   }
-  if (context.findings.size() == before)
-    for (const Finding& finding : check_strength(strength)) {
-      const auto section = places.find(finding.place.substr(std::min(finding.place.size(), std::size_t{15})));
-      const Part& part = section != places.end() ? section->second : whole;
-      context.findings.push_back(placed(finding, part, finding.place));
-    }
+  Strength checked = strength;
+  checked.sections.insert(checked.sections.end(), of_none.begin(), of_none.end());
+  if (!whole_read) checked.rated_speed = 1.0;  // what is wrong with it has been said
+  for (const Finding& finding : check_strength(checked)) {
+    const std::string name = finding.place.substr(std::min(finding.place.size(), std::size_t{15}));
+    const bool no_element =
+        std::any_of(of_none.begin(), of_none.end(), [&](const auto& s) { return s.element == name; });
+    // A contour that the section would be of may give its diameter.
+    if (no_element && finding.parameter == "diameter" && finding.value.empty()) continue;
+    const auto section = places.find(name);
+    const Part& part = section != places.end() ? section->second : whole;
+    context.findings.push_back(placed(finding, part, finding.place));
+  }
   if (const Entry* misfire = table.find("misfire")) read_misfire(misfire->value, strength, context);
   model_case.strength = std::make_shared<const Strength>(std::move(strength));
 }

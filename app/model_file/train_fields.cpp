@@ -27,8 +27,14 @@ void list_firing(Fields& f, EngineCylinders::Params& p) {
     f.number({"first_firing", D::angle}, first);
     const bool columns = f.columns("firing", {{angle, &p.firing_angles}});
     if (columns == !order.empty()) f.fault("needs exactly one of firing_order and firing");
-    if (!order.empty())
-      f.guarded([&] { p.firing_angles = EngineCylinders::even_firing(order, p.strokes, first); });
+    if (order.empty() || columns) return;
+    if (EngineCylinders::why_no_order(order).empty()) {
+      p.firing_angles = EngineCylinders::even_firing(order, p.strokes, first);
+    } else {
+      // Then the element says so, with all else that is wrong with it.
+      p.unread_firing_order = order;
+      p.firing_angles.assign(EngineCylinders::cylinders_of(order), first);
+    }
   } else {
     f.columns("firing", {{angle, &p.firing_angles}});
   }

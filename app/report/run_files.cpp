@@ -113,7 +113,9 @@ std::string RunFiles::text() const {
   if (history_)
     text += pad_right("History", 24) +
             wrap(std::to_string(history_->rows()) + " rows, every " + short_digits(request_.every, 12) +
-                     " s, of " + join(request_.record) + " in " + history_->path(),
+                     " s, of " +
+                     (request_.record.empty() ? "no channel: none is recorded" : join(request_.record)) +
+                     ", in " + history_->path(),
                  24);
   if (events_)
     text +=

@@ -24,7 +24,10 @@ EngineCylinders::EngineCylinders(Params params)
     cylinders_.emplace_back(*this, static_cast<int>(k));
 }
 
-std::vector<double> EngineCylinders::even_firing(const std::string& order, int strokes, double first) {
+namespace {
+
+/// The numbers of cylinders in a firing order; none where it cannot be read.
+std::vector<int> firing_sequence(const std::string& order) {
   std::vector<int> sequence;
   bool readable = !order.empty();
   for (std::size_t i = 0; readable && i <= order.size();) {
@@ -38,9 +41,32 @@ std::vector<double> EngineCylinders::even_firing(const std::string& order, int s
   std::vector<int> sorted = sequence;
   std::sort(sorted.begin(), sorted.end());
   for (std::size_t k = 0; k < sorted.size(); ++k) readable = readable && sorted[k] == static_cast<int>(k) + 1;
-  if (!readable)
-    throw ModelError({{"engine", "firing_order", order, "",
-                       "must name each cylinder from 1 on once, separated by '-', as in 1-5-3-6-2-4"}});
+  return readable ? sequence : std::vector<int>{};
+}
+
+}  // namespace
+
+std::string EngineCylinders::why_no_order(const std::string& order) {
+  return firing_sequence(order).empty()
+             ? "must name each cylinder from 1 on once, separated by '-', as in 1-5-3-6-2-4"
+             : "";
+}
+
+std::size_t EngineCylinders::cylinders_of(const std::string& order) {
+  std::size_t count = 0;
+  bool inside = false;
+  for (const char c : order) {
+    const bool digit = c >= '0' && c <= '9';
+    count += digit && !inside ? 1 : 0;
+    inside = digit;
+  }
+  return count;
+}
+
+std::vector<double> EngineCylinders::even_firing(const std::string& order, int strokes, double first) {
+  const std::vector<int> sequence = firing_sequence(order);
+  if (const std::string why = why_no_order(order); !why.empty())
+    throw ModelError({{"engine", "firing_order", order, "", why}});
   std::vector<double> angles(sequence.size());
   const double interval = cycle(strokes) / static_cast<double>(sequence.size());
   for (std::size_t i = 0; i < sequence.size(); ++i)
@@ -63,6 +89,8 @@ void EngineCylinders::check(ParameterCheck& check) const {
   if (p.strokes != 2 && p.strokes != 4)
     check.fail("strokes", std::to_string(p.strokes), "", "must be 2 or 4");
   check.all_finite("firing_angles", p.firing_angles, "rad");
+  if (!p.unread_firing_order.empty())
+    check.fail("firing_order", p.unread_firing_order, "", why_no_order(p.unread_firing_order));
   if (p.firing_angles.empty()) check.fail("firing_angles", "none", "rad", "each cylinder needs one");
   if (!gas_.empty() || !p.gas.pressure.empty()) gas_.check(check);
   if (gas_.empty() && p.gas.firing.gated())

@@ -58,6 +58,8 @@ class EngineCylinders final : public Element {
     int strokes = 4;                        ///< of a cycle: 2 or 4
     /// Crank angle at the firing top dead centre of each cylinder [rad], one a node; even_firing() finds them.
     std::vector<double> firing_angles = {};
+    std::string unread_firing_order =
+        {};  ///< an order that even_firing() refuses; empty: angles are those meant
     GasPressure::Params gas = {};
     double crankcase_pressure = 0.0;                 ///< p_c [Pa]
     std::vector<Harmonic> tangential_pressure = {};  ///< instead of gas: order, Pa, rad; no misfire
@@ -70,6 +72,11 @@ class EngineCylinders final : public Element {
   /// Firing angles of cylinders 1, 2, ... that fire at even intervals of a cycle in an order such as
   /// "1-5-3-6-2-4", the first of them at `first` [rad]. Throws ModelError where a number is missing or twice.
   static std::vector<double> even_firing(const std::string& order, int strokes, double first = 0.0);
+
+  /// What is wrong with an order: empty, nothing.
+  static std::string why_no_order(const std::string& order);
+  /// The numbers in an order, right or wrong: as many cylinders are meant.
+  static std::size_t cylinders_of(const std::string& order);
 
   const Params& params() const { return params_; }
   std::string_view type() const override { return "set of engine cylinders"; }

@@ -16,10 +16,19 @@ void SpeedGovernor::check(ParameterCheck& check) const {
                  "must not be given together with proportional_gain; give one of them");
     return;
   }
-  if (!(p.droop > 0.0 && p.droop <= 1.0))
-    check.fail("droop", to_text(p.droop), "", "must be > 0 and <= 1; or give proportional_gain");
-  check.positive("rated_torque", p.rated_torque, "N m");
-  check.positive("rated_speed", p.rated_speed, "rad/s");
+  if (std::isnan(p.droop)) {
+    check.fail("proportional_gain", "", "", "is missing; or give droop, rated_torque and rated_speed");
+    return;
+  }
+  if (!(p.droop > 0.0 && p.droop <= 1.0)) check.fail("droop", to_text(p.droop), "", "must be > 0 and <= 1");
+  const auto beside_droop = [&](const char* parameter, double value, const char* unit) {
+    if (std::isnan(value))
+      check.fail(parameter, "", "", "is missing: droop needs it");
+    else
+      check.positive(parameter, value, unit);
+  };
+  beside_droop("rated_torque", p.rated_torque, "N m");
+  beside_droop("rated_speed", p.rated_speed, "rad/s");
 }
 
 void SpeedGovernor::describe(int nodes, Terms& terms) const {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "models/gears/gear_element.hpp"
@@ -10,24 +12,40 @@
 namespace drev {
 namespace {
 
-MeshCycleOptions under_load(const GearDrawing& drawing, const GearPair& pair, const std::string& place) {
-  MeshCycleOptions options = drawing.cycle;
-  std::vector<Finding> findings;
-  ParameterCheck check(place, findings);
-  check.positive("width", pair.face_width(), "m");
-  if (std::isnan(options.load) == std::isnan(drawing.torque_1))
-    check.fail("load", to_text(options.load), "N/m",
+/// What can be said of the drawing without its gears.
+void check_rest(const GearDrawing& drawing, ParameterCheck check) {
+  if (std::isnan(drawing.cycle.load) == std::isnan(drawing.torque_1))
+    check.fail("load", std::isnan(drawing.torque_1) ? "" : to_text(drawing.cycle.load), "N/m",
                "or torque_1 must be given, one of them: the contacts depend on it");
-  else if (std::isnan(options.load)) {
+  else if (std::isnan(drawing.cycle.load))
     check.positive("torque_1", drawing.torque_1, "N m");
-    options.load = drawing.torque_1 / (pair.contour(0).base_radius() * pair.face_width());
-  }
+  else
+    check.positive("load", drawing.cycle.load, "N/m");
   check.within("backlash_percentile", drawing.backlash_percentile, 0.0, 1.0, "");
   if (drawing.tangent && !drawing.loads.empty())
     check.fail("tangent", "true", "",
                "must not be given together with loads, whose law has its slope at each load");
+}
+
+/// The pair and the options of its cycle, under the load that a torque may give. Throws ModelError with all that is wrong
+/// with both.
+std::pair<GearPair, MeshCycleOptions> under_load(const GearDrawing& drawing, const std::string& place) {
+  std::vector<Finding> findings;
+  const ParameterCheck check(place, findings);
+  std::optional<GearPair> pair;
+  try {
+    pair.emplace(drawing.geometry, place);
+    // A width that is wrong has been refused with its gear.
+    ParameterCheck(check).positive("width", pair->face_width(), "m");
+  } catch (const ModelError& error) {
+    findings.insert(findings.end(), error.findings().begin(), error.findings().end());
+  }
+  check_rest(drawing, check);
   if (!findings.empty()) throw ModelError(std::move(findings));
-  return options;
+  MeshCycleOptions options = drawing.cycle;
+  if (std::isnan(options.load))
+    options.load = drawing.torque_1 / (pair->contour(0).base_radius() * pair->face_width());
+  return {std::move(*pair), options};
 }
 
 constexpr double kCurveError = 1e-3;  // of a curve's largest value: below what its finite elements leave open
@@ -78,8 +96,7 @@ Curve thinned(const Curve& curve) {
 }  // namespace
 
 GearMeshData gear_mesh_data(const GearDrawing& drawing, const std::string& place) {
-  const GearPair pair(drawing.geometry, place);
-  const MeshCycleOptions options = under_load(drawing, pair, place);
+  const auto [pair, options] = under_load(drawing, place);
   Backlash backlash(pair, drawing.tolerances);
   MeshCycle cycle(pair, options);
   std::optional<GearLoadLaw> law;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "core/names/rounded_text.hpp"
 #include "models/gears/tooth_compliance.hpp"
 
 namespace drev {
@@ -369,9 +370,9 @@ void check_load(const GearPair& pair, double load) {
   const double t = pair.pitch_point(), t_2 = pair.second_length(t), m = pair.geometry().module;
   const double most = std::pow(kWidest * m, 2) / (shape * t * t_2 / pair.tangent_length());
   if (load > most)
-    throw ModelError({{"mesh cycle", "load", to_text(load), "N/m",
-                       "must be at most " + to_text(most) +
-                           " for these teeth: their contacts would be wider than Hertz's"}});
+    throw ModelError({{"mesh cycle", "load", to_text(load / 1e3), "N/mm",
+                       "must be at most " + rounded_text(most / 1e3, 4) +
+                           " N/mm for these teeth: their contacts would be wider than Hertz's"}});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "core/dense/factorization.hpp"
 #include "core/dense/fourier.hpp"
+#include "core/names/rounded_text.hpp"
 
 namespace drev {
 
@@ -344,7 +345,7 @@ HarmonicBalance::Outcome HarmonicBalance::solve(int harmonics, int samples, doub
     left = then;
   }
   outcome.reason = "harmonic balance did not converge: after " + std::to_string(outcome.iterations) +
-                   " iterations the residual is " + to_text(outcome.residual) + " of the motion";
+                   " iterations the residual is " + rounded_text(outcome.residual, 3) + " of the motion";
   return outcome;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/dense/eigenvalues.hpp"
+#include "core/names/rounded_text.hpp"
 #include "solvers/linear/sparse_cholesky.hpp"
 #include "solvers/stepping/butcher_tableau.hpp"
 
@@ -187,6 +188,15 @@ double stability_limit(const System& system, const StepScheme& scheme) {
     damped = std::min(damped, (x + std::sqrt(gap + x * x)) / (gap * size));
   }
   return damped;
+}
+
+std::optional<std::string> why_unstable(const System& system, const StepScheme& scheme, double step) {
+  constexpr int kDigits = 6;
+  constexpr double kDown = 1.0 - 1e-5;  // so that the number said, once rounded, is below the limit
+  const double limit = stability_limit(system, scheme);
+  if (step <= limit * (1.0 + 1e-9)) return {};
+  return "is above the stability limit of " + scheme.name + " for this system, " +
+         rounded_text(limit * kDown, kDigits) + " s";
 }
 
 }  // namespace drev

@@ -12,6 +12,8 @@
 #include <drev/solvers/stepping/step_scheme.hpp>
 
 #include <complex>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace drev {
@@ -21,5 +23,8 @@ std::vector<std::complex<double>> fast_eigenvalues(const System& system);
 
 /// s; infinity for a method that is stable for every step. Throws SolverError if M cannot be factored.
 double stability_limit(const System& system, const StepScheme& scheme);
+
+/// Why constant steps of this length cannot be taken; none where they can.
+std::optional<std::string> why_unstable(const System& system, const StepScheme& scheme, double step);
 
 }  // namespace drev

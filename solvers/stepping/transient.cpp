@@ -382,13 +382,9 @@ void check_options(const System& system, const TransientOptions& o, const State&
   check.positive("energy_tolerance", o.energy_tolerance, "");
   check_state(system, state, check);
   if (const auto why = why_not_friction(system, o.scheme.name)) check.fail("method", "", "", *why);
-  if (findings.empty() && !controlled) {
-    const double limit = stability_limit(system, o.scheme);
-    if (o.step > limit * (1.0 + 1e-9))
-      check.fail(
-          "step", to_text(o.step), "s",
-          "is above the stability limit of " + o.scheme.name + " for this system, " + to_text(limit) + " s");
-  }
+  if (findings.empty() && !controlled)
+    if (const auto why = why_unstable(system, o.scheme, o.step))
+      check.fail("step", to_text(o.step), "s", *why);
   if (!findings.empty()) throw ModelError(findings);
 }
 

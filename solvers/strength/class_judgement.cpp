@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <optional>
 
+#include "core/names/rounded_text.hpp"
 #include "solvers/strength/exceeded_ranges.hpp"
 #include "solvers/strength/iacs_m68.hpp"
 
@@ -239,12 +238,7 @@ TorqueLimit torque_limit(const SectionStrength& s, double speed_ratio) {
 
 namespace {
 
-/// With the digits of a number that was typed in another unit: 72 mm are 0.072 m.
-std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return to_text(std::strtod(text, nullptr));
-}
+constexpr int kTypedDigits = 12;  // of a number that was typed in another unit: 72 mm are 0.072 m
 
 }  // namespace
 
@@ -256,12 +250,14 @@ std::vector<Finding> check_strength(const Strength& strength) {
     const auto check = [&](const char* parameter, double value, double low, double high, const char* unit,
                            const char* range) {
       if (!std::isnan(value) && !(value >= low && value <= high))
-        findings.push_back({place, parameter, rounded(value), unit, range});
+        findings.push_back({place, parameter, rounded_text(value, kTypedDigits), unit, range});
     };
     constexpr double kLeast = 1e-300, kMost = 1e300;
     check("diameter", s.diameter, kLeast, kMost, "m", "> 0");
-    check("bore", s.bore, 0.0, std::isnan(s.diameter) ? 0.0 : std::nextafter(s.diameter, 0.0), "m",
-          "0 <= bore < diameter");
+    // Beside a diameter that is wrong itself, the bore may be right.
+    if (!(s.diameter <= 0.0))
+      check("bore", s.bore, 0.0, std::isnan(s.diameter) ? 0.0 : std::nextafter(s.diameter, 0.0), "m",
+            "0 <= bore < diameter");
     check("stress_concentration", s.stress_concentration, 1.0, kMost, "", ">= 1");
     check("tensile_strength", s.tensile_strength / 1e6, 400.0, 800.0, "MPa",
           "400 to 800 MPa (IACS UR M68.3)");

@@ -31,11 +31,15 @@ std::vector<NamedDrawing> read_gear_drawings(
   ReadContext context;
   std::vector<NamedDrawing> found;
   const auto take = [&](const std::string& name, const Value& table, const std::string& where) {
-    NamedDrawing one{name, {}};
+    NamedDrawing one;
+    one.name = name;
+    one.where = where;
+    one.part.at = table.at;
     if (!table.is(Value::Kind::table))
       context.findings.push_back(fault_at(table.at, where, "must be a table, not " + kind_name(table)));
     else if (read_fields(
-                 table, where, NodeKind::rotational, {}, [&](Fields& f) { list(f, one.drawing); }, context))
+                 table, where, NodeKind::rotational, {}, [&](Fields& f) { list(f, one.drawing); }, context,
+                 &one.part.fields))
       found.push_back(std::move(one));
   };
   const Value root = parse_toml(text, path);

@@ -6,11 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "app/model_file/part.hpp"
+
 namespace drev::app {
 
 struct NamedDrawing {
   std::string name;  ///< of the element, or "geometry"
   GearDrawing drawing;
+  Part part = {};          ///< where its fields stand
+  std::string where = {};  ///< what faults call its table, "elements.mesh_1.geometry"
 };
 
 /// The drawings of a file: its [geometry], or those of the gear meshes of a model file, repeated ones each. settings: name

@@ -48,6 +48,7 @@ class FieldWriter final : public Fields {
   bool rows(const std::string& name, std::size_t count, const std::function<void(std::size_t)>& resize,
             const std::function<void(Fields&, std::size_t)>& list) override;
   void fault(const std::string&) override {}
+  void refused(const ModelError&) override {}
 
   void add(const std::string& key, const std::string& value) { parts_.emplace_back(key, value); }
   /// "{ key = value, ... }".
