@@ -87,13 +87,15 @@ double least_steps(const System& system, const Method& method, double duration);
 ///      Below two seconds it stays.
 ///   2. The other controlled methods, at the tolerance 1e-4, run 4,000 steps or less in the same way. Where one
 ///      would be cheap enough, every force and torque must agree with the first at 32 times of its trial, to
-///      1e-3 of its peak there.
-///   3. One that costs less than a twentieth is taken.
+///      1e-3 of its peak there, or to 1e-6 of the largest peak.
+///   3. One that costs less than a twentieth is taken; less than a quarter where the first would take more than half a
+///      minute.
 ///
 /// Costs are counts times weights in nanoseconds that were measured once, no clocks: the same system gives the
 /// same answer every time, on every machine.
 ///
-///   exact      products (20 + unknowns + 10 contacts) 2 + steps (8000 + 4 x 12 (loads + projected laws) 100)
+///   exact      products (20 + unknowns + 10 contacts) 2
+///              + steps (8000 + 30 unknowns + 4 x 12 (loads + projected laws) 100)
 ///   stepping   solves (10 (20 + unknowns + 10 contacts) 2 + loads 100)
 ///
 /// The second factor is what a product costs (as above); 4 passes over 12 nodes evaluate the loads of a step.
@@ -104,8 +106,9 @@ struct MethodTrial {
   double other_ns = 0.0;  ///< the same of the cheapest other one that keeps the accuracy; 0: none
 };
 
-/// A change is made where the chosen method costs more than kTooExpensive times as much as another.
-inline constexpr double kTooExpensive = 20.0;
+/// A change is made where the chosen method costs more than so many times as much as another: in runs of up to, and of
+/// more than, half a minute.
+inline constexpr double kTooExpensive = 20.0, kTooExpensiveLong = 4.0;
 
 /// chosen: by choose_method(), for the same system and duration [s]. progress: returns false to stop trying.
 /// Throws nothing of its own: a method that fails in its trial is no candidate.

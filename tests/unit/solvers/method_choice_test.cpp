@@ -157,6 +157,26 @@ TEST_CASE("A method more than twenty times as dear as another that keeps the acc
   CHECK((other.z - exact.z).norm() < 1e-3 * exact.z.norm());
 }
 
+TEST_CASE("A long chain with one stiff and strongly damped shaft gives way to implicit steps") {
+  constexpr int kDiscs = 1000;
+  Model m("long chain");
+  for (int i = 0; i < kDiscs; ++i) {
+    const std::string node = "n" + std::to_string(i);
+    m.add_node(node);
+    m.add<Inertia>("J" + std::to_string(i), {node}, {.inertia = i == 0 ? 1000.0 : 10.0});
+  }
+  for (int i = 0; i + 1 < kDiscs; ++i) {
+    const bool stiff = i + 2 == kDiscs;
+    m.add<ShaftSpring>("s" + std::to_string(i), {"n" + std::to_string(i), "n" + std::to_string(i + 1)},
+                       {.stiffness = stiff ? 1e12 : 1e5, .damping = stiff ? 1e6 : 10.0});
+  }
+  m.set_initial("n0", 0.0, 1.0);
+  const System system = m.build();
+  const MethodTrial trial = try_methods(system, choose_method(system, 20.0, 1e-4), 20.0);
+  INFO(trial.choice.reason << ": " << trial.chosen_ns << " beside " << trial.other_ns);
+  CHECK(trial.choice.method.name == "sdirk4");
+}
+
 TEST_CASE("A method that is affordable, or the cheapest that is right, stays") {
   // Short: a run of two seconds or less is never tried beyond its first steps.
   const System stiff = driven_through(1e9);

@@ -124,7 +124,8 @@ TEST_CASE("A run that settles but has no whole cycle left says just that") {
                  "the run of 3.4 s does not settle"));
 }
 
-TEST_CASE("A periodic start that no run settles on is no steady state: a warning in text, JSON and report") {
+TEST_CASE("A periodic start that no run settles on is no steady state: a warning in text, JSON and report",
+          "[once]") {
   // The teeth of the camshaft's drive rattle without ever repeating.
   const TemporaryFolder folder;
   const std::string report = (folder / "r.html").string();

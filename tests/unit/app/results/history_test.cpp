@@ -240,8 +240,8 @@ TEST_CASE("A killed run leaves a readable part that says so, beside the result b
   const TemporaryFolder folder;
   const std::string out = (folder / "r").string();
   const auto kill_one = [&](const std::string& channel) {
-    const Process process({"run", "camshaft", "--set", "duration_s=10000", "--every", "0.0001", "--record",
-                           channel, "--out", out});
+    const Process process({"run", "camshaft", "--set", "duration_s=10000", "--method", "exact", "--every",
+                           "0.0001", "--record", channel, "--out", out});
     for (int i = 0; i < 1000; ++i) {
       std::error_code missing;
       if (std::filesystem::file_size(folder / "r/history.partial.csv", missing) > 1000 && !missing) break;
@@ -290,8 +290,8 @@ TEST_CASE("A killed run leaves a readable part that says so, beside the result b
 TEST_CASE("A disk that fills up leaves the summary that says that the run has not ended") {
   const TemporaryFolder folder;
   // A summary has more bytes than there is room for, the history few.
-  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--every", "5000", "--record",
-                         "end.angle_rad", "--out", (folder / "r").string()},
+  const Process process({"run", "camshaft", "--set", "duration_s=10000", "--method", "exact", "--every",
+                         "5000", "--record", "end.angle_rad", "--out", (folder / "r").string()},
                         "/dev/null");
   for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r/summary.partial.json"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -306,7 +306,8 @@ TEST_CASE("A disk that fills up leaves the summary that says that the run has no
 
 TEST_CASE("Two runs do not write one file") {
   const TemporaryFolder folder;
-  const Process first({"run", "camshaft", "--set", "duration_s=10000", "--out", (folder / "r").string()});
+  const Process first({"run", "camshaft", "--set", "duration_s=10000", "--method", "exact", "--out",
+                       (folder / "r").string()});
   for (int i = 0; i < 500 && !std::filesystem::exists(folder / "r/summary.partial.json"); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   const auto second = drev_command({"run", "two_inertia", "--out", (folder / "r").string()});
