@@ -3,9 +3,10 @@
 /// itself, to rounding.
 ///
 /// With a rate, by the cubic through values and rates at the ends of a bracket: the function is looked at
-/// where the cubic has its extremum, and the half with the change of sign is kept. Without one, by parabolas
-/// through three points (R. P. Brent, Algorithms for Minimization without Derivatives, 1973, chapter 5), with
-/// a halved bracket where they do not close in.
+/// where the cubic has its extremum, and the half with the change of sign is kept. Rates of one sign at both
+/// ends: where the cubic dips between two extrema, its dip parts the interval into two such brackets. Without
+/// a rate, by parabolas through three points (R. P. Brent, Algorithms for Minimization without Derivatives,
+/// 1973, chapter 5), with a halved bracket where they do not close in.
 #include <drev/solvers/run/peak.hpp>
 
 #include <functional>

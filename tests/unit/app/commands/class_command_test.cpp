@@ -20,6 +20,14 @@ const std::string kGensetFile = DREV_SOURCE_DIR "/models/genset/genset.toml";
 const std::vector<std::string> kGensetSpeeds{"--speeds", "1200:20:1700", "--contact",
                                              "closed",   "--balance",    "generator"};
 
+/// The gear pair, whose wheel drives a machine through a shaft; [class] follows.
+constexpr const char* kPairWithMachine =
+    "format = 1\ninclude = [\"" DREV_SOURCE_DIR
+    "/models/gear_pair/gear_pair.toml\"]\n[nodes]\nmachine = {}\n"
+    "[elements]\nJ_machine = { type = \"inertia\", node = \"machine\", inertia_kg_m2 = 0.02 }\n"
+    "shaft = { type = \"shaft_spring\", nodes = [\"wheel\", \"machine\"], stiffness_Nm_per_rad = 2e6, "
+    "damping_Nms_per_rad = 5 }\n";
+
 nlohmann::json class_json_of(std::vector<std::string> words) {
   words.emplace_back("--json");
   const auto outcome = drev_command(words);
@@ -173,13 +181,9 @@ TEST_CASE("Above 1.05 of the rated speed the rule has no limit: what holds there
 TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fired and misfiring",
           "[class][once]") {
   const drev::test::TemporaryFolder folder;
-  std::ofstream(folder / "pair.toml")
-      << "format = 1\ninclude = [\"" DREV_SOURCE_DIR
-         "/models/gear_pair/gear_pair.toml\"]\n[nodes]\nmachine = {}\n"
-         "[elements]\nJ_machine = { type = \"inertia\", node = \"machine\", inertia_kg_m2 = 0.02 }\n"
-         "shaft = { type = \"shaft_spring\", nodes = [\"wheel\", \"machine\"], stiffness_Nm_per_rad = 2e6, "
-         "damping_Nms_per_rad = 5 }\n[class]\nmisfire = { torque_Nm = 30 }\n[class.sections]\n"
-         "shaft = { permissible_torque_Nm = 28 }\n";
+  std::ofstream(folder / "pair.toml") << kPairWithMachine
+                                      << "[class]\nmisfire = { torque_Nm = 30 }\n[class.sections]\n"
+                                         "shaft = { permissible_torque_Nm = 28 }\n";
   const std::string file = (folder / "pair.toml").string(), report = (folder / "pair.html").string();
   const std::string speeds = "1800:100:2100";
   const nlohmann::json judged = class_json_of({"class", file, "--speeds", speeds, "--report", report});
@@ -231,13 +235,9 @@ TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fi
 TEST_CASE("A limit of heat where only a run in time answers is not decided: text, JSON and report say so",
           "[class]") {
   const drev::test::TemporaryFolder folder;
-  std::ofstream(folder / "pair.toml")
-      << "format = 1\ninclude = [\"" DREV_SOURCE_DIR
-         "/models/gear_pair/gear_pair.toml\"]\n[nodes]\nmachine = {}\n"
-         "[elements]\nJ_machine = { type = \"inertia\", node = \"machine\", inertia_kg_m2 = 0.02 }\n"
-         "shaft = { type = \"shaft_spring\", nodes = [\"wheel\", \"machine\"], stiffness_Nm_per_rad = 2e6, "
-         "damping_Nms_per_rad = 5 }\n[class.sections]\n"
-         "shaft = { permissible_torque_Nm = 1e6, permissible_heat_W = 50 }\n";
+  std::ofstream(folder / "pair.toml") << kPairWithMachine
+                                      << "[class.sections]\n"
+                                         "shaft = { permissible_torque_Nm = 1e6, permissible_heat_W = 50 }\n";
   const std::string report = (folder / "pair.html").string();
   // No motion that is found at 2000 rpm is stable, one at 2100 rpm is.
   const std::vector<std::string> words{"class",    (folder / "pair.toml").string(),
