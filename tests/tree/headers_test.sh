@@ -7,7 +7,7 @@
 # DREV_HEADERS="a.hpp b.hpp" in the environment: only these, below ROOT.
 #
 # Two things save time, and leave nothing out:
-#   - a header that is the first include of another one is compiled with that, as the first thing of a file
+#   - a header follows those that it includes anyway, directly or through others, in the same file
 #   - headers that include large ones, directly or through others, start from just those, precompiled
 set -euo pipefail
 root=$1 compiler=$2
@@ -23,17 +23,24 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 large="Eigen/Core Eigen/SparseCore Eigen/Dense nlohmann/json.hpp drev/core/system.hpp"
 
-# plan: a line a header that is to be compiled, with the large headers that it comes to, "_" for "/".
+# plan: a line a file, with the large headers that its headers come to, "_" for "/", and the headers that it includes.
 # shellcheck disable=SC2086
 awk -v large="$large" '
-  function reach(header, mark,    i, list, n) {  # marks what the header comes to
-    if ((header, mark) in seen) return
-    seen[header, mark] = 1
+  function reach(header, from,    i, list, n) {  # marks what the header that it started from comes to
+    if ((from, header) in reached) return
+    reached[from, header]
+    ++size[from]
     n = split(includes[header], list, " ")
     for (i = 1; i <= n; ++i) {
-      if (list[i] in is_large) heavy[mark, is_large[list[i]]] = 1
-      if (list[i] in includes) reach(list[i], mark)
+      if (list[i] in is_large) heavy[from, is_large[list[i]]]
+      if (list[i] in includes) reach(list[i], from)
     }
+  }
+  function largest_left(from,    header, best) {  # of all, or of those that a header comes to with the same large ones
+    for (header in left)
+      if (from == "" || ((from, header) in reached && class[from] == class[header]))
+        if (best == "" || size[header] > size[best]) best = header
+    return best
   }
   BEGIN {
     count = split(large, all, " ")
@@ -43,33 +50,34 @@ awk -v large="$large" '
       is_large[name] = all[i]
     }
   }
-  FNR == 1 { includes[FILENAME] = ""; first[FILENAME] = ""; clean = 1 }
+  FNR == 1 { includes[FILENAME] = "" }
   /^[ \t]*#[ \t]*include/ {
     name = $0
     sub(/^[^<"]*[<"](drev\/)?/, "", name)
     sub(/[>"].*/, "", name)
-    if (clean) first[FILENAME] = name
     includes[FILENAME] = includes[FILENAME] " " name
-    clean = 0
-    next
   }
-  !/^[ \t]*(\/\/.*|#[ \t]*pragma[ \t]+once)?$/ { clean = 0 }
   END {
     for (header in includes) {
       reach(header, header)
-      class[header] = ""
       for (i = 1; i <= count; ++i)
         if ((header, all[i]) in heavy) { name = all[i]; gsub("/", "_", name); class[header] = class[header] name "+" }
+      if (class[header] == "") class[header] = "-"
+      left[header]
     }
-    for (header in includes)
-      if (first[header] in includes && class[first[header]] == class[header]) with_another[first[header]] = 1
-    for (header in includes)
-      if (!(header in with_another)) print header, (class[header] == "" ? "-" : class[header])
+    while ((header = largest_left("")) != "") {
+      set = class[header]
+      for (file = ""; header != ""; header = largest_left(header)) {
+        file = " " header file
+        delete left[header]
+      }
+      print set file
+    }
   }' $headers | sort >"$work/plan"
 
 # A set of large headers is precompiled where several come to it.
 printf '"%s"\n' "$@" -std=c++20 -Wall -Wextra -Wno-unused-function -Werror >"$work/options"
-cut -d ' ' -f 2 "$work/plan" | sort | uniq -c | while read -r users class; do
+cut -d ' ' -f 1 "$work/plan" | sort | uniq -c | while read -r users class; do
   if [ "$class" = - ] || [ "$users" -lt 5 ]; then continue; fi
   for header in $large; do
     case "+$class" in *"+${header//\//_}+"*) echo "#include <$header>" ;; esac
@@ -79,10 +87,11 @@ done
 jobs=$(env -u OMP_NUM_THREADS nproc 2>/dev/null || echo 2)
 precompile() { "$compiler" "@$work/options" -x c++-header "$1" -o "$1.gch"; }
 compile() {
-  local start=()
-  if [ -f "$work/$2.hpp" ]; then start=(-include "$work/$2.hpp"); fi
-  echo "#include \"$1\"" | "$compiler" "@$work/options" "${start[@]}" -fsyntax-only -I. -x c++ - ||
-    { echo "FAILED: $1 does not compile by itself" >&2; return 1; }
+  local start=() set=$1
+  shift
+  if [ -f "$work/$set.hpp" ]; then start=(-include "$work/$set.hpp"); fi
+  printf '#include "%s"\n' "$@" | "$compiler" "@$work/options" "${start[@]}" -fsyntax-only -I. -x c++ - ||
+    { echo "FAILED: $*: one does not compile by itself" >&2; return 1; }
 }
 export -f compile precompile
 export work compiler
