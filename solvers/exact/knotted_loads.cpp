@@ -147,6 +147,7 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   const GaussRule& rule = gauss_rule();
   l.kinked = l.unfinished = false;
   l.monotone = true;
+  l.off_at_ends = 0.0;
   l.strongest = 1.0;
   Samples at;
   double low = 0.0, high = 0.0, slowest = 1e300, fastest = -1e300;
@@ -184,7 +185,7 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   if (knots && monotone) return pass_knots(l, series, end, kinks);
   if (knots) {  // Its angle may turn back in the step: each node on its own side of the knots.
     l.monotone = false;
-    return differ_called(l, forces);
+    return differ_called(l, series, forces);
   }
   sample(l, rule.s.data(), at);
   double slope = 0.0, speed_slope = 0.0;

@@ -16,14 +16,20 @@ constexpr double kTermRounding = 1e-13;
 constexpr double kPathRest = 4e-3;
 // Error of the step's end, relative to the same: (2 D + 3) j_{D+1}(3/2), see legendre_projection.hpp.
 constexpr double kEndRest = 1e-6;
-// Coefficients that tell the rest: so many that a force which is even or odd by chance is not taken for a smooth one.
+// Coefficients that tell the rest of kinks.
 constexpr int kTail = 4;
-// The same for a sum of harmonics, and for a law between the bounds of its pieces.
-constexpr int kAnalyticTail = 2;
-// The same behind a kink, times its contraction factor: the rest swings about zero there.
+// Error of the step's end, relative to what nodes do not see of a force: half a distance between two of them, of a jump.
+constexpr double kNodeRest = 0.1;
+// A smooth force is off its projection by no more than so much of the last coefficients at the step's ends.
+constexpr double kSmoothEnds = 2.0;
+// Error of the step's end behind a kink, relative to the rest times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
-// Rounding of the projection's coefficients, relative to the largest force so far.
+// Rounding of the projection's coefficients, relative to the force.
 constexpr double kForceRounding = 4e-15;
+// What a projection leaves is rounding where it is below kMostRounding of the force and a step of at most kMuchShorter the length
+// leaves at least kSameRest of it: of a smooth force it would leave a 2^-5 or less, and of a jump of that size all but nothing counts.
+constexpr double kMostRounding = 1e-7, kMuchShorter = 0.3, kSameRest = 0.5;
+constexpr double kRoundingVaries = 16.0;  // from step to step, at most
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
   return {m.value, m.rate * h, 0.5 * m.acceleration * h * h};
@@ -46,6 +52,8 @@ LoadSeries::LoadSeries(const System& system, TaylorSeries& series)
       of_kinks_(stride_),
       largest_force_(idx(stride_)),
       changes_(idx(stride_)),
+      rounding_(idx(stride_)),
+      too_large_(idx(stride_)),
       last_kink_(idx(stride_)),
       u_(idx(system.prescribed_count())) {
   for (const LoadTerm& term : system.loads()) {
@@ -66,6 +74,7 @@ LoadSeries::LoadSeries(const System& system, TaylorSeries& series)
 
 void LoadSeries::move(double t, const Vector& z, const Vector& v) {
   t_ = t;
+  tried_ = 0.0;
   assembler_.set_time(t);
   straight_.move(assembler_.nominal(), z, v);
   expanded_.move(assembler_, z, v);
@@ -139,22 +148,52 @@ double LoadSeries::angle_term(const PlacedLoad& l, const TaylorSeries& series, i
   return l.feedback ? nominal + l.coeff * series.coefficient(k, l.row) : nominal;
 }
 
-/// Error of a held contact's torque, relative to the largest force on the row so far. Coefficients of smooth forces fall
-/// from degree to degree at an even rate: the next one tells, where the tail would ask for far shorter steps.
-double LoadSeries::held_rest(const LegendreProjection& forces, int row) const {
+/// Of the last coefficients of a force, the larger of two in a row, of which a force that is even or odd has one: (D, D-1), (D-2, D-3).
+static std::array<double, 2> last_of(const LegendreProjection& forces, int row) {
   const auto larger = [&](int j) {
     return std::max(std::abs(forces.coefficient(j, row)), std::abs(forces.coefficient(j - 1, row)));
   };
-  const double last = larger(kProjectionDegree), before = larger(kProjectionDegree - 2);
-  if (!(last > kForceRounding * largest_force_[idx(row)])) return 0.0;
-  return last * std::min(1.0, last / before) / largest_force_[idx(row)];
+  return {larger(kProjectionDegree), larger(kProjectionDegree - 2)};
 }
 
-void LoadSeries::note_forces(int row) {
+/// What no polynomial of the projection's degree holds of a smooth force: coefficients fall from degree to degree at an even rate,
+/// and the next one tells. Those at twice the nodes' count tell what Gauss's rule leaves of the coefficients themselves; and what
+/// changes beside the step's ends, where no node is, shows there.
+LoadSeries::Rest LoadSeries::rest_of_force(int row, double off_at_ends) const {
+  const auto [last, before] = last_of(projection_, row);
+  const double falls = last > 0.0 ? std::min(1.0, last / before) : 0.0, falls_2 = falls * falls;
+  Rest rest{.smooth = last * falls,
+            .rough = std::max(last * falls_2 * falls_2, off_at_ends - kSmoothEnds * last)};
+  const double rounding = std::max(rounding_[idx(row)], kForceRounding * size_of_force(row));
+  if (rest.smooth <= rounding) rest.smooth = 0.0;
+  if (rest.rough <= rounding) rest.rough = 0.0;
+  return rest;
+}
+
+double LoadSeries::size_of_force(int row) const {
   double size = 0.0;
   for (int k = 0; k < 3; ++k) size += std::abs(p_[idx(k * stride_ + row)]);
   for (int j = 0; j < kProjectionTerms; ++j) size += std::abs(projection_.coefficient(j, row));
-  largest_force_[idx(row)] = std::max(largest_force_[idx(row)], size);
+  return size;
+}
+
+std::optional<double> LoadSeries::find_rounding(const ProjectedLaws& laws) {
+  std::optional<double> found;
+  const auto look = [&](int row, double off_at_ends) {
+    const auto [smooth, rough] = rest_of_force(row, off_at_ends);
+    const double tail = std::max(smooth, rough);
+    double& before = too_large_[idx(row)];
+    if (tried_ > 0.0 && h_ <= kMuchShorter * tried_ && tail > rounding_[idx(row)] &&
+        tail >= kSameRest * before && tail <= kMostRounding * size_of_force(row)) {
+      rounding_[idx(row)] = kRoundingVaries * tail;
+      found = tried_;
+    }
+    before = tail;
+  };
+  smooth_.for_rows(look);
+  laws.for_rows(look);
+  tried_ = h_;
+  return found;
 }
 
 LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held) {
@@ -165,8 +204,9 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     std::swap(last_, projection_);
   }
   projection_.clear();
+  const auto [z_scale, v_scale] = smooth_.follow(series);
   for (std::size_t kind = 0; kind < per_reach_.size(); ++kind)
-    per_reach_[kind] = h_ / std::min(series.z_scale()[kind] / (0.5 * h_), series.v_scale()[kind]);
+    per_reach_[kind] = h_ / std::min(z_scale[kind] / (0.5 * h_), v_scale[kind]);
   Pass pass;
   pass.contraction = find_kinks(series);
   pass.contraction = std::max(pass.contraction, smooth_.project(series, first, projection_, of_kinks_));
@@ -176,28 +216,40 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     pass.contraction = std::max(pass.contraction, laws.project(series, projection_));
   }
   // Kinks apart: no polynomial of any degree holds them, and at the step's end they need none.
-  const auto rest_of = [&](const LegendreProjection& forces, int row, int terms) {
+  const auto moves = [&](double force, int row) {
+    return force > 0.0 ? force * relative_move(series, row) : 0.0;
+  };
+  const auto rest_of_kinks = [&](int row) {
     double tail = 0.0;
-    for (int j = kProjectionDegree - terms + 1; j <= kProjectionDegree; ++j)
-      tail += std::abs(forces.coefficient(j, row));
-    const double rest = tail * relative_move(series, row);
-    if (held) {  // where friction leaves no motion but rounding, the forces themselves are the measure
-      const double of_force = held_rest(forces, row);
-      return std::isfinite(rest) ? std::min(rest, of_force) : of_force;
-    }
-    return std::isfinite(rest) ? rest : 0.0;
+    for (int j = kProjectionDegree - kTail + 1; j <= kProjectionDegree; ++j)
+      tail += std::abs(of_kinks_.coefficient(j, row));
+    const double by = moves(tail, row);
+    return std::isfinite(by) ? by : 0.0;
   };
   if (held) {
-    smooth_.for_rows([&](int row, bool) { note_forces(row); });
-    laws.for_rows([&](int row, bool) { note_forces(row); });
+    const auto note = [&](int row, double) {
+      largest_force_[idx(row)] = std::max(largest_force_[idx(row)], size_of_force(row));
+    };
+    smooth_.for_rows(note);
+    laws.for_rows(note);
   }
   // The path is off inside the step; of that, the contraction factor comes back at its end.
   const double at_end = std::max(kEndRest, kPathRest * pass.contraction);
-  const auto note_rest = [&](int row, bool analytic) {
-    const double rest = rest_of(projection_, row, analytic ? kAnalyticTail : kTail);
-    pass.inside = std::max(pass.inside, kPathRest * rest);
-    pass.residual = std::max(pass.residual, at_end * rest);
-    if (held) pass.torque = std::max(pass.torque, held_rest(projection_, row));
+  const auto note_rest = [&](int row, double off_at_ends) {
+    const Rest rest = rest_of_force(row, off_at_ends);
+    const double largest = largest_force_[idx(row)];
+    // Where friction leaves no motion but rounding, the forces themselves are the measure.
+    const auto measured = [&](double force) {
+      const double by = moves(force, row);
+      if (held && largest > 0.0 && !(by <= force / largest)) return force / largest;
+      return std::isfinite(by) ? by : 0.0;
+    };
+    if (held && largest > 0.0)
+      pass.torque = std::max({pass.torque, rest.smooth / largest, rest.rough / largest});
+    const double smooth = measured(rest.smooth);
+    pass.inside = std::max(pass.inside, kPathRest * smooth);
+    pass.residual = std::max(pass.residual, at_end * smooth);
+    pass.unseen = std::max(pass.unseen, kNodeRest * measured(rest.rough));
   };
   smooth_.for_rows(note_rest);
   laws.for_rows(note_rest);
@@ -205,10 +257,10 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     // A kink is projected along a path that lacks the rest itself.
     for_knotted([&](const PlacedLoad& l, double, double) {
       if (l.contraction > 0.0)
-        pass.residual = std::max(pass.residual, kKinkRest * l.contraction * rest_of(of_kinks_, l.row, kTail));
+        pass.residual = std::max(pass.residual, kKinkRest * l.contraction * rest_of_kinks(l.row));
     });
     smooth_.for_kinked([&](int row, double contraction, double strongest, bool must) {
-      const double rest = rest_of(of_kinks_, row, kTail);
+      const double rest = rest_of_kinks(row);
       pass.residual = std::max(pass.residual, kKinkRest * contraction * rest);
       if (must || (kPathRest * rest > kMostInside && strongest < 1.0))
         pass.cut = std::min(pass.cut.value_or(1.0), strongest);
@@ -223,8 +275,8 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     pass.change = std::max(pass.change, held && force > 0.0 ? std::min(moves, size / force) : moves);
   };
   for_knotted([&](const PlacedLoad& l, double, double) { note_change(l.row); });
-  smooth_.for_rows([&](int row, bool) { note_change(row); });
-  laws.for_rows([&](int row, bool) { note_change(row); });
+  smooth_.for_rows([&](int row, double) { note_change(row); });
+  laws.for_rows([&](int row, double) { note_change(row); });
   if (pass.change == 0.0) return pass;
   projected_ = true;
   with_laws_ = !laws.empty();

@@ -57,8 +57,8 @@ class LoadSeries {
     double contraction = 0.0;
     /// Error of the motion at the step's end by what no polynomial of the projection's degree holds of the forces.
     double residual = 0.0;
-    /// The same inside the step, of smooth forces.
-    double inside = 0.0;
+    /// The same inside the step, of smooth forces; and at the end, by what changes faster than nodes show.
+    double inside = 0.0, unseen = 0.0;
     /// s of a knot that leaves too much of the motion inside the step: the step should end there.
     std::optional<double> cut = {};
     /// Where friction holds: what the projection lacks of a force, relative to the largest force on its row so far. It tells when
@@ -68,6 +68,9 @@ class LoadSeries {
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
   /// first: the step is new. held: some friction contact is stuck.
   Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held);
+  /// After a pass over a step that leaves too much: where that is rounding of forces, since a longer step from the same start
+  /// left no more, the length of that one [s]. Passes leave as much out of account from then on.
+  std::optional<double> find_rounding(const ProjectedLaws& laws);
   /// For a sweep (kink_response.hpp) in place of passes: lists the kinks that loads pass up to s = end of the step, where
   /// the series stands at z_end; the loads are then on the stretches behind them. The whole step first. False: some
   /// angle may turn back, or its load has a kink in time.
@@ -145,8 +148,12 @@ class LoadSeries {
   double relative_move(const TaylorSeries& series, int row) const {
     return series.reach(row) * per_reach_[idx(row < series.size() ? series.kind(row) : 0)];
   }
-  double held_rest(const LegendreProjection& forces, int row) const;
-  void note_forces(int row);
+  /// What the projection lacks of a force on a row [N m]: of a smooth one, and of one that changes faster than its nodes show.
+  struct Rest {
+    double smooth = 0.0, rough = 0.0;
+  };
+  Rest rest_of_force(int row, double off_at_ends) const;
+  double size_of_force(int row) const;
 
   const System& system_;
   Assembler assembler_;
@@ -163,6 +170,9 @@ class LoadSeries {
   LegendreProjection of_kinks_;           // of this pass: of tables' kinks in the step
   std::vector<double> largest_force_;     // by row, of steps in which friction held
   std::vector<double> changes_;           // by row, of the projection in this pass
+  std::vector<double> rounding_;          // of forces by row, as far as it was found
+  std::vector<double> too_large_;         // by row, what was too large to be left out of the last step tried,
+  double tried_ = 0.0;                    // and its length [s]; 0: none from here
   TaylorSeries::Norm per_reach_{};        // relative_move() over the row's reach, by kind
   KinkMoments kinks_;
   /// A kink that leaves more of the motion than this inside the step ends it.

@@ -21,7 +21,7 @@ ProjectedLaws::ProjectedLaws(const System& system)
     if (!linear_pieces(term).empty() || ExpandedLaws::takes(term)) continue;
     laws_.push_back({.index = static_cast<int>(j), .term = &term});
     if (term.phase_node >= 0) laws_.back().phase_row = system.row_of(term.phase_node);
-    for (const Entry& e : term.z) rows_.push_back({e.index, !term.force->pieces().empty()});
+    for (const Entry& e : term.z) rows_.push_back(e.index);
   }
 }
 

@@ -27,11 +27,10 @@ class ProjectedLaws {
   /// Adds the differences along the series' path, on the right side; returns how much of a change of the
   /// path comes back.
   double project(const TaylorSeries& series, LegendreProjection& projection);
-  /// Calls judge(row, analytic) for every row on which such a law acts; analytic: the law states pieces, and
-  /// is analytic between their bounds and its knots.
+  /// Calls judge(row, 0) for every row on which such a law acts: as SmoothLoads::for_rows(). Laws say where they kink.
   template <class Judge>
   void for_rows(const Judge& judge) const {
-    for (const Row& r : rows_) judge(r.row, r.analytic);
+    for (const int row : rows_) judge(row, 0.0);
   }
 
   /// Series of how the pieces of the law are scaled by its angle along the path (ScalarForce::pieces_scale).
@@ -58,11 +57,7 @@ class ProjectedLaws {
   const System& system_;
   Assembler assembler_;
   std::vector<Law> laws_;
-  struct Row {
-    int row;
-    bool analytic;
-  };
-  std::vector<Row> rows_;
+  std::vector<int> rows_;
   std::vector<double> g_;
   NodeForces forces_;
   Vector z_, v_;

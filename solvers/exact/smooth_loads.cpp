@@ -52,25 +52,35 @@ void SmoothLoads::add_slopes(TaylorSeries& series) const {
   for (const Place& l : loads_) l.add_slopes(series, 0.0);
 }
 
-double SmoothLoads::differ_called(const Place& l, NodeForces& forces) const {
+double SmoothLoads::differ_called(Place& l, const TaylorSeries& series, NodeForces& forces) const {
   const GaussRule& rule = gauss_rule();
   double gain = 0.0;
-  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
-    const double s = rule.s[q], turn = (phi_[1] + phi_[2] * s) * s;
-    const std::size_t at = q * idx(stride_) + idx(l.row);
-    const double deviation = l.coeff * path_[at];
+  const auto differ = [&](double s, double along, double rate) {
+    const double turn = (phi_[1] + phi_[2] * s) * s, deviation = l.coeff * along;
     const double nominal_speed = l.ratio * (phi_[1] + 2.0 * phi_[2] * s) / h_;
     const LoadResponse r = l.term->load->evaluate({.t = t_ + h_ * s,
                                                    .nominal_angle = l.ratio * (nominal_ + turn),
                                                    .deviation = deviation,
-                                                   .speed = nominal_speed + l.coeff * rate_[at],
+                                                   .speed = nominal_speed + l.coeff * rate,
                                                    .nominal_speed = nominal_speed});
-    const double tangent = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
-    forces.at(q, l.row) += l.coeff * (r.torque - l.torque - tangent);
     if (l.feedback)
       gain = std::max(gain,
                       0.5 * h_ * h_ * std::abs(r.dtorque_dangle - l.slope) + h_ * std::abs(r.dtorque_dspeed));
+    const double tangent = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
+    return l.coeff * (r.torque - l.torque - tangent);
+  };
+  std::array<double, GaussRule::kNodes> at_nodes;
+  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+    const std::size_t at = q * idx(stride_) + idx(l.row);
+    at_nodes[q] = differ(rule.s[q], path_[at], rate_[at]);
+    forces.at(q, l.row) += at_nodes[q];
   }
+  double along = 0.0, rate = 0.0;
+  for (int k = series.degree(); l.feedback && k >= 0; --k) {
+    rate = rate * GaussRule::kAheadOfEnd + along;
+    along = along * GaussRule::kAheadOfEnd + series.coefficient(k, l.row);
+  }
+  l.off_at_ends = rule.off_at_ends(at_nodes, 0.0, differ(GaussRule::kAheadOfEnd, along, rate / h_));
   return gain;
 }
 
@@ -78,9 +88,6 @@ double SmoothLoads::project(const TaylorSeries& series, bool first, LegendreProj
                             LegendreProjection& kinks) {
   places_.clear();
   if (loads_.empty()) return 0.0;
-  path_.resize(GaussRule::kNodes * idx(stride_));
-  rate_.resize(path_.size());
-  series.at_nodes(path_.data(), rate_.data());
   if (first) known_.clear();
   forces_ = known_;
   double contraction = 0.0;
@@ -88,7 +95,7 @@ double SmoothLoads::project(const TaylorSeries& series, bool first, LegendreProj
     if (!l.feedback && !first && l.knots == nullptr) continue;
     NodeForces& forces = l.feedback || l.knots != nullptr ? forces_ : known_;
     const double gain =
-        l.knots != nullptr ? differ_knotted(l, series, forces, kinks) : differ_called(l, forces);
+        l.knots != nullptr ? differ_knotted(l, series, forces, kinks) : differ_called(l, series, forces);
     contraction = std::max(contraction, l.coeff * l.coeff * series.mobility(l.row) * gain);
   }
   projection.add_nodes(forces_);

@@ -38,6 +38,14 @@ class SmoothLoads {
   void add_to(double h, const std::array<double, 3>& phi, double* p);
   /// Adds the tangents' slopes to the stiffness, and what they take from the right side.
   void add_slopes(TaylorSeries& series) const;
+  /// The motion at Gauss's nodes, for project(); returns the scales of the motion with it.
+  std::array<TaylorSeries::Norm, 2> follow(const TaylorSeries& series) {
+    if (loads_.empty()) return {series.z_scale(), series.v_scale()};
+    path_.resize(GaussRule::kNodes * idx(stride_));
+    rate_.resize(path_.size());
+    series.at_nodes(path_.data(), rate_.data());
+    return series.scales_at_nodes(path_.data(), rate_.data());
+  }
   /// Adds to the projection what the loads differ from their tangents along the series' path; returns how much of
   /// a change of the path comes back. first: the step is new.
   /// kinks: takes the loads that pass knots in the step.
@@ -53,11 +61,10 @@ class SmoothLoads {
     for (const Place& l : loads_)
       if (l.kinked) judge(l.row, l.contraction, l.strongest, l.unfinished);
   }
-  /// Calls judge(row, analytic) for every row with such a load; analytic: its projection's coefficients decay, since
-  /// the load is a sum of harmonics.
+  /// Calls judge(row, off_at_ends) for every row with such a load: GaussRule::off_at_ends().
   template <class Judge>
   void for_rows(const Judge& judge) const {
-    for (const Place& l : loads_) judge(l.row, l.knots != nullptr && l.monotone);
+    for (const Place& l : loads_) judge(l.row, l.off_at_ends);
   }
   /// Work of the tangents' slopes on the unknowns over a part of the step, at whose end they stand [J].
   double slope_work(const TaylorSeries& series, const Vector& end) const;
@@ -67,6 +74,7 @@ class SmoothLoads {
     using TangentLoad::TangentLoad;
     bool kinked = false, unfinished = false, monotone = true;  // what this pass found of the load
     double strongest = 1.0;                                    // of the knots passed
+    double off_at_ends = 0.0;
   };
   struct Samples;
   double beyond_tangent(const Place& load, const Samples& at, std::size_t q) const;
@@ -76,7 +84,7 @@ class SmoothLoads {
   double pass_knots(Place& load, const TaylorSeries& series, double end, LegendreProjection& kinks);
   void sample(const Place& load, const double* s, Samples& at) const;
   double add_interval(Place& load, double from, double to, LegendreProjection& kinks) const;
-  double differ_called(const Place& load, NodeForces& forces) const;
+  double differ_called(Place& load, const TaylorSeries& series, NodeForces& forces) const;
 
   const System& system_;
   int stride_;

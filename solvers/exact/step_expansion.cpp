@@ -184,22 +184,28 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
       projects ? std::clamp(std::max(share / contraction_, kOfFirstChange * first_change_), share, loosest)
                : share;
   if (expanded_) tolerance = share;
+  double excess = 0.0;
+  bool tells_length = false;  // excess grows with the step's length as that of smooth forces does
+  const auto fitting = [&excess] { return kShorten * std::pow(excess, -1.0 / kProjectionTerms); };
   for (int pass = 0;; ++pass) {
     const bool last = !projects || settled;
     // A sweep that was given up leaves the first one.
     const double got =
         pass == 0 && expanded_ ? h : series.expand(from.state.z, from.state.v, h, last ? share : tolerance);
     if (got == h && (expanded.turns_back(series) || known.came_further(series))) return {h, true};
-    if (got < h || last) return {got};
+    if (got < h || last) return {.h = got, .longer = tells_length ? fitting() : StepLength::kUnlimited};
     if (pass == kMaxPasses) return {0.5 * h};
     const LoadSeries::Pass made = known.project(series, smooth, pass == 0, friction.holds());
-    const double excess = std::max({made.residual / std::max(share, kJump * limits.tolerance),
-                                    made.inside / (kInside * limits.tolerance), made.torque / kTorqueRest});
+    const double of_jump = std::max(share, kJump * limits.tolerance), unseen = made.unseen / of_jump;
+    excess = std::max({made.residual / of_jump, unseen, made.inside / (kInside * limits.tolerance),
+                       made.torque / kTorqueRest});
+    tells_length = excess > unseen && excess <= 1.0;
     if (excess > 1.0 && h > limits.shortest) {
+      if (const auto longer = known.find_rounding(smooth)) return {*longer, true};
       // Nearly always a law's knot in the step: a step to just behind it, which is then cut there.
       const auto knot = smooth.first_knot(series, kBeforeEnd);
       if (knot && *knot > kNearStart) return {h * *knot * (1.0 + kBehindKnot), true};
-      return {h * std::max(0.2, kShorten * std::pow(excess, -1.0 / kProjectionTerms))};
+      return {h * std::max(0.2, fitting())};
     }
     if (made.cut && h > limits.shortest) return {h * *made.cut, true};
     contraction_ = std::max(made.contraction, 1e-300);

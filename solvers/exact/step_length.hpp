@@ -40,10 +40,13 @@ class StepLength {
     if (!(std::abs(even.h - last_) <= kSame * even.h)) last_ = even.h;
     return last_;
   }
-  /// An attempt over h held for `got` [s], 0 where terms overflowed. Returns the length to try where that is less.
-  double attempted(double h, double got) {
+  static constexpr double kUnlimited = 1e300;
+  /// An attempt over h held for `got` [s], 0 where terms overflowed; a next step may be `longer` times that. Returns the length to
+  /// try where less was got than asked for.
+  double attempted(double h, double got, double longer = kUnlimited) {
     if (got > 0.0)
-      growing_ = std::min(wait_ > 0 ? longest_projected_ : longest_, kGrowth * std::max(got, growing_));
+      growing_ = std::min(wait_ > 0 ? longest_projected_ : longest_,
+                          longer < kGrowth ? longer * got : kGrowth * std::max(got, growing_));
     if (got != h) growing_ = got > 0.0 ? got : kRetreat * h;
     return growing_;
   }
@@ -66,7 +69,7 @@ class StepLength {
 
  private:
   // Most of a step's length over that of the one before, which was shortened; of the next attempt over a step with overflow.
-  static constexpr double kGrowth = 1.5, kRetreat = 1.0 / 16.0;
+  static constexpr double kGrowth = 3.0, kRetreat = 1.0 / 16.0;
   // Two lengths that differ by the rounding of times alone, relative to them.
   static constexpr double kSame = 1e-7;
   static constexpr int kPause = 8, kEnough = 16, kLongestPause = 1024;  // steps

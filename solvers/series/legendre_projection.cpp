@@ -12,17 +12,28 @@ namespace {
 
 using Powers = PowersOf<kProjectionTerms>;
 
+/// L_j(s).
+std::array<double, kProjectionTerms> legendre_at(double s) {
+  std::array<double, kProjectionTerms> p{1.0};
+  const double x = 2.0 * s - 1.0;
+  for (int j = 0; j < kProjectionDegree; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    p[k + 1] = ((2 * j + 1) * x * p[k] - (j > 0 ? j * p[k - 1] : 0.0)) / (j + 1);
+  }
+  return p;
+}
+
 GaussRule make_gauss_rule() {
   GaussRule rule{};
   find_gauss_rule(GaussRule::kNodes, rule.s.data(), rule.weight.data());
+  const auto start = legendre_at(0.0), end = legendre_at(GaussRule::kAheadOfEnd);
   for (std::size_t i = 0; i < GaussRule::kNodes; ++i) {
-    const double x = 2.0 * rule.s[i] - 1.0;
-    double p = 1.0, last = 0.0;
-    for (int j = 0; j <= kProjectionDegree; ++j) {
-      rule.legendre[static_cast<std::size_t>(j)][i] = p;
-      const double next = ((2 * j + 1) * x * p - j * last) / (j + 1);
-      last = p;
-      p = next;
+    const auto here = legendre_at(rule.s[i]);
+    for (std::size_t j = 0; j < here.size(); ++j) {
+      rule.legendre[j][i] = here[j];
+      const double weight = static_cast<double>(2 * j + 1) * rule.weight[i] * here[j];
+      rule.at_start[i] += weight * start[j];
+      rule.at_end[i] += weight * end[j];
     }
   }
   return rule;

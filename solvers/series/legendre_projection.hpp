@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -38,8 +39,22 @@ PowersOf<kTerms> legendre_powers() {
 /// Gauss-Legendre nodes and weights on [0, 1], with L_j at the nodes.
 struct GaussRule {
   static constexpr int kNodes = 12;
+  /// Where the step's end is looked at: a force that jumps there, at a breakpoint, is asked for ahead of the jump.
+  static constexpr double kAheadOfEnd = 1.0 - 1e-9;
   std::array<double, kNodes> s, weight;
   std::array<std::array<double, kNodes>, kProjectionTerms> legendre;
+  std::array<double, kNodes> at_start,
+      at_end;  ///< weights of the projection's values at s = 0 and kAheadOfEnd
+
+  /// How far the projection of a force is from its values at the ends of the step: more than its last coefficients, where the
+  /// force changes between an end and the node beside it, which no node sees.
+  double off_at_ends(const std::array<double, kNodes>& at_nodes, double start, double end) const {
+    for (std::size_t q = 0; q < at_nodes.size(); ++q) {
+      start -= at_start[q] * at_nodes[q];
+      end -= at_end[q] * at_nodes[q];
+    }
+    return std::max(std::abs(start), std::abs(end));
+  }
 };
 const GaussRule& gauss_rule();
 /// A polynomial of s and its slope at the nodes of Gauss's rule over [0, end].

@@ -359,6 +359,16 @@ double TaylorSeries::loss(double s, bool swept_too, bool of_added) {
   return sum / h_;
 }
 
+std::array<TaylorSeries::Norm, 2> TaylorSeries::scales_at_nodes(const double* z, const double* v) const {
+  std::array<Norm, 2> scales{z_scale_, v_scale_};
+  for (int q = 0; q < GaussRule::kNodes; ++q) {
+    const std::array<Norm, 2> here{norm(z + q * stride_), norm(v + q * stride_)};
+    for (std::size_t i = 0; i < 2; ++i)
+      for (std::size_t kind = 0; kind < 2; ++kind) scales[i][kind] = std::max(scales[i][kind], here[i][kind]);
+  }
+  return scales;
+}
+
 void TaylorSeries::at_nodes(double* z, double* v) const {
   constexpr int n = GaussRule::kNodes;
   series_at_nodes(stride_, degree_, coefficients(0), gauss_rule().s.data(), n, z, v);

@@ -185,6 +185,9 @@ class TaylorSeries {
   using Norm = std::array<double, 2>;
   const Norm& z_scale() const { return z_step_scale_; }
   const Norm& v_scale() const { return v_step_scale_; }
+  /// The same with values at Gauss's nodes, as at_nodes() gives them, in place of terms: those of a force that no polynomial holds
+  /// are far larger than what they add up to.
+  std::array<Norm, 2> scales_at_nodes(const double* z, const double* v) const;
   int kind(int row) const { return kinds_.empty() ? 0 : kinds_[idx(row)]; }
   /// Upper estimate of the acceleration of a row by a force on it [1/(kg m^2) or 1/kg].
   double mobility(int row) const {

@@ -83,12 +83,13 @@ TEST_CASE("A longer step that is given up is tried again, the later the sooner i
   CHECK(steps_held_back(step, end) == first);
 }
 
-TEST_CASE("A step that was shortened grows by half a step at a time; terms that overflow leave a sixteenth") {
+TEST_CASE("A step that was shortened grows threefold at a time, or as what is projected bears; terms that overflow leave a sixteenth") {
   StepLength step;
   step.start(1.0, 1e6, 1e-6);
   CHECK(step.attempted(4.0, 1.0) == 1.0);
-  CHECK(step.attempted(1.0, 1.0) == 1.5);
-  CHECK(step.attempted(1.5, 1.5) == 2.25);
+  CHECK(step.attempted(0.5, 0.5) == 1.5);
+  CHECK(step.attempted(1.5, 1.5, 1.2) == 1.5 * 1.2);
+  CHECK(step.attempted(1.8, 1.8, 0.9) == 1.8 * 0.9);
   CHECK(step.attempted(3.375, 3.375) == 4.0);
   CHECK(step.attempted(4.0, 0.0) == 0.25);
   // Without a mode, or in a run shorter than its step, the run is one step.
