@@ -29,6 +29,7 @@ constexpr double kUndamped = 1e-9;      // damping ratio that is rounding [-]
 constexpr double kTooDamped = 0.7;      // damping ratio above which an order has no resonance [-]
 constexpr std::size_t kMostPeaks = 10;  // largest number of peaks of a section
 constexpr double kSmallPeak = 1e-3;     // smallest peak relative to the section's largest one [-]
+constexpr double kSameSeed = 1e-2;   // part of a mode's half width below which two seeds are one [-]
 constexpr double kPeakSpeed = 1e-7;     // tolerance of a peak's speed relative to it [-]
 constexpr double kNear = 1e-6;          // distance from an undamped resonance relative to its speed [-]
 constexpr double kAway = 1e-4;  // larger distance, beside which the mode's growth towards it shows [-]
@@ -179,7 +180,7 @@ class Search {
         }
         const double width = std::abs(lambda.real()) / sweep_.orders[k];
         for (const double at : {speed - width, speed, speed + width})
-          if (at > low_ && at < high_) all_sections(at);
+          if (at > low_ && at < high_ && !is_near(at, kSameSeed * width)) all_sections(at);
       }
   }
 
@@ -292,6 +293,12 @@ class Search {
       (above(middle) < 0.0 ? low : high) = middle;
     }
     return 0.5 * (low + high);
+  }
+  /// Whether a speed is known already. Modes that coincide meet an order at speeds that differ by rounding alone: all of them
+  /// entered, the rounding of the curve would make a top of one of them, between neighbours without the curve's own top.
+  bool is_near(double speed, double distance) const {
+    const auto above = curves_.lower_bound(speed - distance);
+    return above != curves_.end() && above->first <= speed + distance;
   }
   void all_sections(double speed) {
     if (curves_.contains(speed)) return;

@@ -62,6 +62,40 @@ TEST_CASE("Twist, heat and extremes are taken at the peaks between the speeds", 
   CHECK(0.5 * (peak.maximum - peak.minimum) == Approx(peak.half_range).epsilon(1e-12));
 }
 
+TEST_CASE("Peaks and heat of modes that coincide are located", "[sweep_peaks]") {
+  // Six equal branches on a hub, with torques that add up to nothing: the hub stands still, each branch is one of its own.
+  constexpr int branches = 6;
+  constexpr double k = 2e4, J = 0.5, p = 100.0;
+  const double c = 0.2 * 2.0 * std::sqrt(k * J);
+  Model m("star");
+  m.add_node("hub");
+  m.set_reference("hub", constant_speed(rpm(1000.0)));
+  m.add<Inertia>("J_hub", {"hub"}, {.inertia = 0.2});
+  for (int b = 0; b < branches; ++b) {
+    const std::string n = std::to_string(b), node = "b" + n;
+    m.add_node(node);
+    m.add<Inertia>("J" + n, {node}, {.inertia = J});
+    m.add<ShaftSpring>("k" + n, {"hub", node}, {.stiffness = k, .damping = c});
+    m.add<EngineOrderTorque>("t" + n, {node},
+                             {.harmonics = {{1.0, p, deg(60.0 * b)}}, .twist_feedback = false});
+  }
+  const auto torque = [&](double w) {
+    const Complex z(k, c * w);
+    return std::abs(z * p / (z - J * w * w));
+  };
+  double best = 0.0, at = 0.0;
+  for (double w = 180.0; w < 210.0; w += 1e-3)
+    if (torque(w) > best) best = torque(w), at = w;
+  const LinearSweep sweep =
+      sweep_linear(m.build(), {.speeds = rpm_speeds(100.0, 100.0, 3000.0), .orders = {1.0}});
+  for (int b = 0; b < branches; ++b) {
+    const SweepLargest half = largest_half_range(sweep, b);
+    CHECK(half.value == Approx(best).epsilon(1e-9));
+    CHECK(half.speed == Approx(at).margin(2e-3));
+    CHECK(largest_heat(sweep, b).value == Approx(0.5 * p * p / c).epsilon(1e-10));
+  }
+}
+
 TEST_CASE("An order that meets an undamped mode is an infinite peak at their speed", "[sweep_peaks]") {
   const LinearSweep sweep =
       sweep_linear(two_discs(0.0), {.speeds = rpm_speeds(300.0, 100.0, 1500.0), .orders = {1.0, 2.0, 3.0}});
