@@ -86,7 +86,7 @@ inline constexpr const char* kCampbellExamples =
     "  drev campbell engine.toml --speeds 300:10:1800\n"
     "  drev campbell engine.toml --speeds 300,1800 --orders 1,2,4,6 --out result --json\n"
     "\n"
-    "relative: amplitude of the order in that section, divided by that of the largest critical.\n";
+    "relative: the mode's own part of that amplitude, divided by the largest own part of all criticals.\n";
 
 inline constexpr const char* kClassExamples =
     "Examples:\n"

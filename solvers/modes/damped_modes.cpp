@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -49,9 +50,11 @@ bool rigid_motions_stand_apart(const Matrix& k, const Matrix& v, int rigid) {
   return found == rigid;
 }
 
-DampedMode to_mode(std::complex<double> lambda) {
+/// rounding: absolute value of a real part [1/s] up to which it is 0.
+DampedMode to_mode(std::complex<double> lambda, double rounding) {
+  if (std::abs(lambda.real()) <= rounding) lambda.real(0.0);
   const double w = std::abs(lambda);
-  return {lambda, to_hz(lambda.imag()), to_hz(w), -lambda.real() / w};
+  return {lambda, to_hz(lambda.imag()), to_hz(w), 0.0 - lambda.real() / w};
 }
 
 }  // namespace
@@ -88,7 +91,8 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
   const int e = n - r;
   Matrix v = basis_by_stiffness(k, system.symmetric_tangent());
   Vector scale = Vector::Constant(e, k.norm() > 0.0 ? std::sqrt(k.norm()) : 1.0);
-  if (rigid_motions_stand_apart(k, v, r)) {
+  const bool one_scale = rigid_motions_stand_apart(k, v, r);
+  if (one_scale) {
     k = (v.transpose() * k * v).eval();
   } else {
     // Soft parts beside very stiff ones: the undamped modes, which are found to their own accuracy.
@@ -120,10 +124,15 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
   std::sort(set.real_lambda.rbegin(), set.real_lambda.rend());
   std::sort(oscillating.begin(), oscillating.end(),
             [&](int i, int j) { return std::abs(eigen.values[i]) < std::abs(eigen.values[j]); });
+  // Nothing damps or feeds energy in: no mode decays or grows.
+  const bool conservative = system.symmetric_tangent() && c.isZero(0.0);
+  constexpr double kRealRounding = 4.0 * std::numeric_limits<double>::epsilon();
   const Matrix to_unknowns = mass.solve_lower_transposed(v);
   set.shapes.setZero(system.node_count(), static_cast<Eigen::Index>(oscillating.size()));
   for (std::size_t j = 0; j < oscillating.size(); ++j) {
-    set.modes.push_back(to_mode(eigen.values[oscillating[j]]));
+    const std::complex<double> lambda = eigen.values[oscillating[j]];
+    const double size = one_scale ? scale[0] : std::abs(lambda);
+    set.modes.push_back(to_mode(lambda, conservative ? std::abs(lambda) : kRealRounding * size));
     // Rates are lambda times the shape: the common factor is scaled away.
     const Eigen::VectorXcd z = to_unknowns * eigen.vectors.col(oscillating[j]).tail(n);
     auto shape = set.shapes.col(static_cast<Eigen::Index>(j));

@@ -1,63 +1,123 @@
 #pragma once
-/// Searches of a function of one variable between two bounds: bracketed_maximum(), its largest value, and IllinoisBracket, its root.
+/// Searches of a function of one variable: tops_of() brackets its local maxima between points at which it is known, MaximumSearch
+/// and bracketed_maximum() find its largest value between two bounds, IllinoisBracket its root.
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 namespace drev {
+
+/// A point that its neighbours do not exceed. The function may rise above it between `low` and `high`: the neighbours, or the
+/// point itself on a side where there is none or where its value is not a number.
+struct TopBracket {
+  std::size_t point = 0;
+  double low = 0.0, high = 0.0;
+  bool at_end = false;  ///< true: it has one neighbour, or none
+  /// Where to look first: the point; at an end a place just inside. If the function is not larger there, the end is the top.
+  double start = 0.0;
+};
+
+/// All of them, by ascending place. Of neighbours with the same value the last one is taken.
+inline std::vector<TopBracket> tops_of(const std::vector<double>& places, const std::vector<double>& values) {
+  constexpr double kInside = 1e-3;  // distance of `start` from an end relative to the bracket [-]
+  std::vector<TopBracket> tops;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool first = i == 0 || std::isnan(values[i - 1]),
+               last = i + 1 == values.size() || std::isnan(values[i + 1]);
+    if (std::isnan(values[i]) || (!first && values[i - 1] > values[i]) ||
+        (!last && values[i + 1] >= values[i]))
+      continue;
+    const double low = places[first ? i : i - 1], high = places[last ? i : i + 1];
+    const double start = first  ? low + kInside * (high - low)
+                         : last ? high - kInside * (high - low)
+                                : places[i];
+    tops.push_back({i, low, high, first || last, start});
+  }
+  return tops;
+}
 
 struct BracketedMaximum {
   double at = 0.0, value = 0.0;
 };
 
-/// The largest value: parabolic interpolation through three points, with golden section steps where it does not converge. If there
-/// are several local maxima, one is found.
+/// The largest value between two bounds: parabolic interpolation through three points, with golden section steps where it does not
+/// converge. If there are several local maxima, one is found.
 ///
-/// look(t): the function, evaluated for t in [low, high]. start: first point, best one whose value is above
-/// both ends; if it is at or outside the bounds, golden section chooses it. width: absolute tolerance of the
-/// place, in the unit of t; the place is never located more closely than rounding allows.
+///   MaximumSearch search(low, start, high, width);
+///   while (!search.found()) search.take(f(search.next()));
+///
+/// start: first point, best one whose value is above both ends; if it is at or outside the bounds, golden section chooses it.
+/// width: absolute tolerance of the place; the place is never located more closely than rounding allows. A value that is not a
+/// number counts as low.
 /// Source: R. P. Brent, Algorithms for Minimization without Derivatives, Prentice-Hall, 1973, chapter 5 (procedure localmin).
-template <class Look>
-BracketedMaximum bracketed_maximum(double low, double start, double high, double width, const Look& look) {
-  const double golden = 0.5 * (3.0 - std::sqrt(5.0));
-  const double rounding = std::sqrt(std::numeric_limits<double>::epsilon());
-  constexpr int kMostLooks = 100;
-  double a = low, b = high;
-  double x = start > low && start < high ? start : a + golden * (b - a);
-  double f_x = look(x), w = x, v = x, f_w = f_x, f_v = f_x, step = 0.0, before = 0.0;
-  for (int i = 0; i < kMostLooks; ++i) {
-    const double middle = 0.5 * (a + b), near = 1e-2 * rounding * std::abs(x) + 0.25 * width;
-    if (std::abs(x - middle) <= 2.0 * near - 0.5 * (b - a)) break;
+class MaximumSearch {
+ public:
+  MaximumSearch(double low, double start, double high, double width) : a_(low), b_(high), width_(width) {
+    x_ = w_ = v_ = u_ = start > low && start < high ? start : a_ + golden() * (b_ - a_);
+  }
+  bool found() const { return found_; }
+  /// Where the function is to be evaluated, within the bounds.
+  double next() const { return u_; }
+  /// The function's value there.
+  void take(double f_u) {
+    if (looks_ == 0) {
+      f_x_ = f_w_ = f_v_ = f_u;
+    } else if (f_u >= f_x_) {
+      (u_ < x_ ? b_ : a_) = x_;
+      v_ = w_, f_v_ = f_w_, w_ = x_, f_w_ = f_x_, x_ = u_, f_x_ = f_u;
+    } else {
+      (u_ < x_ ? a_ : b_) = u_;
+      if (f_u >= f_w_ || w_ == x_)
+        v_ = w_, f_v_ = f_w_, w_ = u_, f_w_ = f_u;
+      else if (f_u >= f_v_ || v_ == x_ || v_ == w_)
+        v_ = u_, f_v_ = f_u;
+    }
+    plan();
+  }
+  BracketedMaximum best() const { return {x_, f_x_}; }
+
+ private:
+  static double golden() { return 0.5 * (3.0 - std::sqrt(5.0)); }
+  void plan() {
+    constexpr int kMostLooks = 100;
+    const double rounding = std::sqrt(std::numeric_limits<double>::epsilon());
+    const double middle = 0.5 * (a_ + b_), near = 1e-2 * rounding * std::abs(x_) + 0.25 * width_;
+    found_ = looks_++ == kMostLooks || std::abs(x_ - middle) <= 2.0 * near - 0.5 * (b_ - a_);
+    if (found_) return;
     bool parabola = false;
-    if (std::abs(before) > near) {
-      const double r = (x - w) * (f_x - f_v), q_0 = (x - v) * (f_x - f_w);
-      double p = (x - v) * q_0 - (x - w) * r, q = 2.0 * (q_0 - r);
+    if (std::abs(before_) > near) {
+      const double r = (x_ - w_) * (f_x_ - f_v_), q_0 = (x_ - v_) * (f_x_ - f_w_);
+      double p = (x_ - v_) * q_0 - (x_ - w_) * r, q = 2.0 * (q_0 - r);
       q > 0.0 ? p = -p : q = -q;
-      const double last = before;
-      before = step;
-      if (std::abs(p) < std::abs(0.5 * q * last) && p > q * (a - x) && p < q * (b - x)) {
-        step = p / q;
-        const double u = x + step;
-        if (u - a < 2.0 * near || b - u < 2.0 * near) step = x < middle ? near : -near;
+      const double last = before_;
+      before_ = step_;
+      if (std::abs(p) < std::abs(0.5 * q * last) && p > q * (a_ - x_) && p < q * (b_ - x_)) {
+        step_ = p / q;
+        const double u = x_ + step_;
+        if (u - a_ < 2.0 * near || b_ - u < 2.0 * near) step_ = x_ < middle ? near : -near;
         parabola = true;
       }
     }
     if (!parabola) {
-      before = x < middle ? b - x : a - x;
-      step = golden * before;
+      before_ = x_ < middle ? b_ - x_ : a_ - x_;
+      step_ = golden() * before_;
     }
-    const double u = x + (std::abs(step) >= near ? step : step > 0.0 ? near : -near), f_u = look(u);
-    if (f_u >= f_x) {
-      (u < x ? b : a) = x;
-      v = w, f_v = f_w, w = x, f_w = f_x, x = u, f_x = f_u;
-    } else {
-      (u < x ? a : b) = u;
-      if (f_u >= f_w || w == x)
-        v = w, f_v = f_w, w = u, f_w = f_u;
-      else if (f_u >= f_v || v == x || v == w)
-        v = u, f_v = f_u;
-    }
+    u_ = x_ + (std::abs(step_) >= near ? step_ : step_ > 0.0 ? near : -near);
   }
-  return {x, f_x};
+
+  double a_, b_, width_, x_, w_, v_, u_;
+  double f_x_ = 0.0, f_w_ = 0.0, f_v_ = 0.0, step_ = 0.0, before_ = 0.0;
+  int looks_ = 0;
+  bool found_ = false;
+};
+
+/// The largest value of look(t), as MaximumSearch finds it.
+template <class Look>
+BracketedMaximum bracketed_maximum(double low, double start, double high, double width, const Look& look) {
+  MaximumSearch search(low, start, high, width);
+  while (!search.found()) search.take(look(search.next()));
+  return search.best();
 }
 
 /// A root of f between two places at which f has different signs.

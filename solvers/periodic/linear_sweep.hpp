@@ -66,7 +66,7 @@ struct SweepSection {
   Vector mean, maximum, minimum, maximum_angle, minimum_angle;
   Vector twist_mean, twist_half_range;
   Vector heat;  ///< mean heat at each speed [W]; 0 for a section without a damper
-  /// Largest heat between the speeds [W] and its speed [rad/s]; not a number: none was located.
+  /// Largest local maximum of the heat between the speeds [W] and its speed [rad/s]; not a number: none was located.
   double heat_peak = std::numeric_limits<double>::quiet_NaN(), heat_peak_speed = heat_peak;
   bool contact = false;
   Vector half_range() const { return 0.5 * (maximum - minimum); }

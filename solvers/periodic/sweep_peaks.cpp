@@ -29,9 +29,12 @@ constexpr double kUndamped = 1e-9;      // damping ratio that is rounding [-]
 constexpr double kTooDamped = 0.7;      // damping ratio above which an order has no resonance [-]
 constexpr std::size_t kMostPeaks = 10;  // largest number of peaks of a section
 constexpr double kSmallPeak = 1e-3;     // smallest peak relative to the section's largest one [-]
-constexpr double kPeakSpeed = 1e-7;     // tolerance of a peak's speed relative to it [-]
-constexpr double kNear = 1e-6;          // distance from an undamped resonance relative to its speed [-]
-constexpr double kAway = 1e-4;  // larger distance, beside which the mode's growth towards it shows [-]
+constexpr double kSmallHeat =
+    0.1;  // smallest heat relative to the section's largest one that is followed [-]
+constexpr double kSameSeed = 1e-2;   // part of a mode's half width below which two seeds are one [-]
+constexpr double kPeakSpeed = 1e-7;  // tolerance of a peak's speed relative to it [-]
+constexpr double kNear = 1e-6;       // distance from an undamped resonance relative to its speed [-]
+constexpr double kAway = 1e-4;       // larger distance, beside which the mode's growth towards it shows [-]
 constexpr double kResonantGrowth =
     10.0;                         // growth from kAway to kNear above which the mode moves a section [-]
 constexpr double kOwnPart = 0.1;  // smallest own part of an amplitude whose top is the mode's [-]
@@ -179,27 +182,27 @@ class Search {
         }
         const double width = std::abs(lambda.real()) / sweep_.orders[k];
         for (const double at : {speed - width, speed, speed + width})
-          if (at > low_ && at < high_) all_sections(at);
+          if (at > low_ && at < high_ && !is_near(at, kSameSeed * width)) all_sections(at);
       }
   }
 
   void find_peaks() {
     const std::vector<std::pair<double, Values>> points(curves_.begin(), curves_.end());
+    std::vector<double> speeds, values(points.size());
+    for (const auto& [speed, at] : points) speeds.push_back(speed);
     for (std::size_t c = 0; c < sweep_.sections.size(); ++c) {
       std::vector<SweepPeak> peaks;
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        const double here = points[i].second.half_range[c];
-        const bool first = i == 0, last = i + 1 == points.size();
-        const bool top = (first || here >= points[i - 1].second.half_range[c]) &&
-                         (last || here > points[i + 1].second.half_range[c]);
-        if (!top || !(here > kSmallPeak * largest_[c])) continue;
+      for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i].second.half_range[c];
+      for (const TopBracket& top : tops_of(speeds, values)) {
+        const double here = values[top.point];
+        if (!(here > kSmallPeak * largest_[c])) continue;
         SweepPeak peak;
-        peak.section = static_cast<int>(c), peak.speed = points[i].first, peak.half_range = here;
-        peak.at_end = first || last;
+        peak.section = static_cast<int>(c), peak.speed = speeds[top.point], peak.half_range = here;
+        peak.at_end = top.at_end;
         if (!peak.at_end && std::isfinite(here)) {
           const BracketedMaximum found =
-              bracketed_maximum(points[i - 1].first, points[i].first, points[i + 1].first,
-                                kPeakSpeed * points[i].first, [&](double speed) { return one(speed, c); });
+              bracketed_maximum(top.low, top.start, top.high, kPeakSpeed * top.start,
+                                [&](double speed) { return one(speed, c); });
           if (found.value >= here) peak.speed = found.at, peak.half_range = found.value;
         }
         peaks.push_back(peak);
@@ -212,26 +215,36 @@ class Search {
     }
   }
 
-  /// Locates the largest heat of each section between the speeds.
+  /// Locates the largest heat of each section between the speeds: every local maximum of the speeds, the seeds and the peaks of
+  /// the half range is followed.
   void find_heat() {
-    const std::vector<std::pair<double, Values>> points(curves_.begin(), curves_.end());
     for (std::size_t c = 0; c < sweep_.sections.size(); ++c) {
-      std::size_t top = 0;
-      for (std::size_t i = 1; i < points.size(); ++i)
-        if (points[i].second.heat[c] > points[top].second.heat[c]) top = i;
-      const double here = points[top].second.heat[c];
-      if (top == 0 || top + 1 == points.size() || !(here > 0.0) || !std::isfinite(here)) continue;
-      const double speed = points[top].first;
-      const BracketedMaximum found = bracketed_maximum(points[top - 1].first, speed, points[top + 1].first,
-                                                       kPeakSpeed * speed, [&](double at) {
-                                                         pause_();
-                                                         response_.vibration(at, point_);
-                                                         return point_.heat[static_cast<Eigen::Index>(c)];
-                                                       });
+      std::map<double, double> heats;
+      for (const auto& [speed, at] : curves_) heats[speed] = at.heat[c];
+      for (const SweepPeak& peak : sweep_.peaks)
+        if (peak.section == static_cast<int>(c) && std::isfinite(peak.half_range))
+          heats[peak.speed] = peak.heat;
+      std::vector<double> speeds, values;
+      double largest = 0.0;
+      for (const auto& [speed, heat] : heats) {
+        speeds.push_back(speed), values.push_back(heat);
+        if (std::isfinite(heat)) largest = std::max(largest, heat);
+      }
+      const auto look = [&](double speed) {
+        pause_();
+        response_.vibration(speed, point_);
+        return point_.heat[static_cast<Eigen::Index>(c)];
+      };
       SweepSection& section = sweep_.sections[c];
-      const bool higher = found.value >= here;
-      section.heat_peak = higher ? found.value : here;
-      section.heat_peak_speed = higher ? found.at : speed;
+      for (const TopBracket& top : tops_of(speeds, values)) {
+        const double here = values[top.point], width = kPeakSpeed * top.start;
+        if (!(here > kSmallHeat * largest) || !std::isfinite(here) || !(top.high > top.low)) continue;
+        if (top.at_end && !(look(top.start) > here)) continue;
+        BracketedMaximum best = bracketed_maximum(top.low, top.start, top.high, width, look);
+        if (!(best.value >= here)) best = {speeds[top.point], here};
+        if (!(section.heat_peak >= best.value))
+          section.heat_peak = best.value, section.heat_peak_speed = best.at;
+      }
     }
   }
 
@@ -292,6 +305,12 @@ class Search {
       (above(middle) < 0.0 ? low : high) = middle;
     }
     return 0.5 * (low + high);
+  }
+  /// Whether a speed is known already. Modes that coincide meet an order at speeds that differ by rounding alone: all of them
+  /// entered, the rounding of the curve would make a top of one of them, between neighbours without the curve's own top.
+  bool is_near(double speed, double distance) const {
+    const auto above = curves_.lower_bound(speed - distance);
+    return above != curves_.end() && above->first <= speed + distance;
   }
   void all_sections(double speed) {
     if (curves_.contains(speed)) return;

@@ -56,6 +56,9 @@ class Judge {
     LimitedCurve curve{section, number, half_range, [this, &data](const CurvePoint& p) {
                          return p.value / limit(data, p.speed).continuous;
                        }};
+    curve.transient_ratio = [this, &data](const CurvePoint& p) {
+      return p.value / limit(data, p.speed).transient;
+    };
     curve.points = curve_of(sweep_, curve, [](const SweepPeak& peak) { return peak.half_range; });
     return curve;
   }
@@ -319,6 +322,7 @@ ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength, c
                           "is the name of no section of the sweep that carries a torque"});
   if (!findings.empty()) throw ModelError(std::move(findings));
   judge.add_rule_end(sweep_at, curves);
+  if (sweep_at) add_tops(curves, sweep_at);
   find_exceeded_ranges(curves, sweep_at);
   ClassJudgement found;
   std::vector<bool> judged(sweep.sections.size(), false);

@@ -12,8 +12,8 @@
 /// interpolated linearly between its speeds and its located peaks; beside an unbounded peak as one over the distance from it.
 /// A range so found can be several times as wide as it is where the speeds are far apart; it ends between the speeds stated.
 ///
-/// Heat and chatter are judged at the speeds of the sweep and at the located peaks, too: heat at its own peak; the ratio
-/// of chatter at the peaks of the half range, where it is largest but for the slope of the mean.
+/// The ratio of a torque or of chatter to its limit is followed to each of its tops between the speeds and the located peaks if
+/// the sweep can be solved at further speeds; of a sweep alone it is judged at these. Heat is judged at its own peak, too.
 #include <drev/core/error.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 #include <drev/solvers/strength/section_strength.hpp>
@@ -121,9 +121,9 @@ using SweepAt = std::function<LinearSweep(const std::vector<double>& speeds)>;
 /// sweep_linear().
 SweepAt sweep_between(const System& system, LinearSweepOptions options);
 
-/// sweep_at: solves the sweep where ranges begin and end, all ends at once, about ten times; empty: the sweep alone is judged,
-/// with ends between its speeds. Throws ModelError where data of a section are out of range or belong to no section of the
-/// sweep, and what sweep_at throws.
+/// sweep_at: solves the sweep where ratios to the limits are largest and where ranges begin and end, all tops and then all ends at
+/// once, about ten to thirty times each; empty: the sweep alone is judged, with ends between its speeds. Throws ModelError where
+/// data of a section are out of range or belong to no section of the sweep, and what sweep_at throws.
 ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength, const SweepAt& sweep_at = {});
 
 /// Faults of the data themselves, without a sweep: place, parameter, value, unit, range.

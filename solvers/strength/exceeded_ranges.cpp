@@ -12,6 +12,70 @@ namespace {
 
 constexpr double kEndSpeed = 1e-7;  // width of an end's bracket relative to its speed [-]
 constexpr int kMostRounds = 120;    // largest number of sweeps for the ends; bisection alone needs 60
+constexpr double kTopSpeed = 1e-7;  // tolerance of a top's speed relative to it [-]
+constexpr double kLowTop = 0.1;     // part of the curve's largest ratio below which a top is not followed [-]
+
+using Ratio = std::function<double(const CurvePoint&)>;
+
+/// A local maximum of one of a curve's ratios that is followed.
+struct FollowedTop {
+  std::size_t curve = 0;
+  const Ratio* ratio = nullptr;
+  double known = 0.0;  // ratio at the point from which it is followed [-]
+  bool at_end = false;
+  MaximumSearch search;
+  CurvePoint best = {};
+  bool found = false;
+};
+
+void find_tops(std::size_t number, const LimitedCurve& curve, const Ratio& ratio,
+               std::vector<FollowedTop>& tops) {
+  std::vector<double> speeds, ratios;
+  double largest = 0.0;
+  for (const CurvePoint& p : curve.points) {
+    speeds.push_back(p.speed), ratios.push_back(ratio(p));
+    if (std::isfinite(ratios.back())) largest = std::max(largest, ratios.back());
+  }
+  for (const TopBracket& top : tops_of(speeds, ratios)) {
+    const double here = ratios[top.point], speed = speeds[top.point];
+    if (!std::isfinite(here) || !(here > kLowTop * largest) || !(top.high > top.low)) continue;
+    tops.push_back(
+        {number, &ratio, here, top.at_end, MaximumSearch(top.low, top.start, top.high, kTopSpeed * speed)});
+  }
+}
+
+/// Solves the sweep at all trial speeds that are not 0, in any order, and calls look(number of the trial, sweep, number of its
+/// speed) for each. false: all are 0.
+template <class Look>
+bool solve_at(const std::vector<double>& trials, const SweepAt& sweep_at, const Look& look) {
+  std::vector<double> speeds;
+  std::copy_if(trials.begin(), trials.end(), std::back_inserter(speeds), [](double s) { return s > 0.0; });
+  if (speeds.empty()) return false;
+  std::sort(speeds.begin(), speeds.end());
+  speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
+  const LinearSweep sweep = sweep_at(speeds);
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    if (!(trials[i] > 0.0)) continue;
+    look(i, sweep, std::lower_bound(speeds.begin(), speeds.end(), trials[i]) - speeds.begin());
+  }
+  return true;
+}
+
+/// One round: looks at the next speeds of all tops that are not found yet. false: all are.
+bool climb(std::vector<FollowedTop>& tops, const std::vector<LimitedCurve>& curves, const SweepAt& sweep_at) {
+  std::vector<double> trials;
+  for (const FollowedTop& top : tops) trials.push_back(top.found ? 0.0 : top.search.next());
+  return solve_at(trials, sweep_at, [&](std::size_t i, const LinearSweep& sweep, Eigen::Index at) {
+    FollowedTop& top = tops[i];
+    const LimitedCurve& curve = curves[top.curve];
+    const CurvePoint here{trials[i],
+                          curve.value(sweep.sections[static_cast<std::size_t>(curve.section)], at)};
+    top.search.take((*top.ratio)(here));
+    const BracketedMaximum best = top.search.best();
+    if (best.at == here.speed) top.best = here;
+    top.found = top.search.found() || (top.at_end && !(best.value > top.known));
+  });
+}
 
 /// A speed and the ratio to the limit at it.
 struct RatioPoint {
@@ -91,24 +155,32 @@ void find_ranges(std::size_t number, LimitedCurve& curve, std::vector<EndBracket
 
 /// One round: solves the sweep at the trial speeds of all ends that are not found yet. false: all are.
 bool narrow(std::vector<EndBracket>& ends, const std::vector<LimitedCurve>& curves, const SweepAt& sweep_at) {
-  std::vector<double> speeds, trials;
+  std::vector<double> trials;
   for (const EndBracket& b : ends) trials.push_back(b.found() ? 0.0 : b.trial());
-  std::copy_if(trials.begin(), trials.end(), std::back_inserter(speeds), [](double s) { return s > 0.0; });
-  if (speeds.empty()) return false;
-  std::sort(speeds.begin(), speeds.end());
-  speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
-  const LinearSweep sweep = sweep_at(speeds);
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    if (!(trials[i] > 0.0)) continue;
+  return solve_at(trials, sweep_at, [&](std::size_t i, const LinearSweep& sweep, Eigen::Index at) {
     const LimitedCurve& curve = curves[ends[i].curve];
-    const auto at = std::lower_bound(speeds.begin(), speeds.end(), trials[i]) - speeds.begin();
     const double value = curve.value(sweep.sections[static_cast<std::size_t>(curve.section)], at);
     take(ends[i], {trials[i], curve.ratio({trials[i], value})});
-  }
-  return true;
+  });
 }
 
 }  // namespace
+
+void add_tops(std::vector<LimitedCurve>& curves, const SweepAt& sweep_at) {
+  std::vector<FollowedTop> tops;
+  for (std::size_t c = 0; c < curves.size(); ++c)
+    for (const Ratio* ratio : {&curves[c].ratio, &curves[c].transient_ratio})
+      if (*ratio) find_tops(c, curves[c], *ratio, tops);
+  while (climb(tops, curves, sweep_at)) {
+  }
+  for (const FollowedTop& top : tops) {
+    if (!(top.search.best().value > top.known)) continue;
+    std::vector<CurvePoint>& points = curves[top.curve].points;
+    const auto at = std::lower_bound(points.begin(), points.end(), top.best.speed,
+                                     [](const CurvePoint& p, double speed) { return p.speed < speed; });
+    if (at == points.end() || at->speed != top.best.speed) points.insert(at, top.best);
+  }
+}
 
 void find_exceeded_ranges(std::vector<LimitedCurve>& curves, const SweepAt& sweep_at) {
   std::vector<EndBracket> ends;

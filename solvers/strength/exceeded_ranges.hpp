@@ -1,5 +1,10 @@
 #pragma once
-/// Speed ranges in which a quantity of a section exceeds its limit, and where they end. Internal to judge_sweep().
+/// Where a quantity of a section is largest against its limit, and the speed ranges in which it exceeds it, with their ends.
+/// Internal to judge_sweep().
+///
+/// Where the limit changes with the speed, the ratio to it is largest beside the peaks of the quantity. Each local maximum of the
+/// ratio among the known points is followed between its neighbours (MaximumSearch of solvers/periodic/bracketed_search.hpp); one
+/// sweep solves the trial speeds of all of them.
 ///
 /// An end lies between a speed at which the ratio to the limit is above 1 and a neighbour at which it is not. It is first
 /// interpolated: linearly in the ratio, beside an infinite ratio, which grows as one over the distance, linearly in one over
@@ -27,9 +32,14 @@ struct LimitedCurve {
   std::function<double(const SweepSection&, Eigen::Index i)> value;
   /// Its ratio to the limit [-]; not a number: there is no limit.
   std::function<double(const CurvePoint&)> ratio;
+  /// Its ratio to the limit in transient running [-]; empty: that is not asked for.
+  std::function<double(const CurvePoint&)> transient_ratio = {};
   std::vector<CurvePoint> points = {};  ///< by ascending speed
   std::vector<ExceededRange> ranges = {};
 };
+
+/// Adds the tops of both ratios that lie between the points to the points of all curves. sweep_at: not empty.
+void add_tops(std::vector<LimitedCurve>& curves, const SweepAt& sweep_at);
 
 /// Finds the ranges of all curves. sweep_at: as in judge_sweep(); empty: ends are interpolated.
 void find_exceeded_ranges(std::vector<LimitedCurve>& curves, const SweepAt& sweep_at);

@@ -82,7 +82,27 @@ TEST_CASE("A free chain without damping: the double zero does not split", "[damp
   CHECK(set.modes.size() == 49);
   REQUIRE(set.real_lambda.size() == 1);
   CHECK(std::abs(set.real_lambda[0]) < 1e-10);
-  for (const DampedMode& mode : set.modes) CHECK(std::abs(mode.damping_ratio) < 1e-12);
+  for (const DampedMode& mode : set.modes) {
+    CHECK(mode.lambda.real() == 0.0);
+    CHECK(mode.damping_ratio == 0.0);
+    CHECK_FALSE(std::signbit(mode.damping_ratio));
+  }
+}
+
+TEST_CASE("Damping elsewhere leaves no rounding as the damping of an undamped mode", "[damped_modes]") {
+  // Two oscillators that nothing ties to each other, one with a damper.
+  Model model("two oscillators");
+  for (const char* node : {"a", "b"}) {
+    model.add_node(node);
+    model.add<Inertia>("J_" + std::string(node), {node}, {.inertia = 0.3});
+  }
+  model.add<GroundSpring>("k_a", {"a"}, {.stiffness = 700.0, .damping = 3.0});
+  model.add<GroundSpring>("k_b", {"b"}, {.stiffness = 5000.0});
+  const DampedModeSet set = solve_damped_modes(model.build());
+  REQUIRE(set.modes.size() == 2);
+  CHECK(set.modes[0].lambda.real() == Approx(-5.0).epsilon(1e-13));
+  CHECK(set.modes[1].lambda.real() == 0.0);
+  CHECK(set.modes[1].damping_ratio == 0.0);
 }
 
 TEST_CASE("A dashpot that is not proportional", "[damped_modes]") {

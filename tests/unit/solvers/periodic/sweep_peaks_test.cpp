@@ -16,8 +16,12 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Discs of 2 and 3 kg m2 on a shaft of 10 kN m/rad: free, with orders 1, 2 and 3 of 50, 40 and 30 N m on the first.
-System two_discs(double damping) {
+const std::vector<Harmonic> three_orders = {
+    {1.0, 50.0, deg(10.0)}, {2.0, 40.0, deg(50.0)}, {3.0, 30.0, deg(100.0)}};
+
+/// Discs of 2 and 3 kg m2 on a shaft of 10 kN m/rad: free, with torques on the first, such as orders 1, 2 and 3 of 50, 40 and
+/// 30 N m.
+System two_discs(double damping, const std::vector<Harmonic>& harmonics = three_orders) {
   Model m("two discs");
   m.add_node("a");
   m.add_node("b");
@@ -25,11 +29,7 @@ System two_discs(double damping) {
   m.add<Inertia>("J_a", {"a"}, {.inertia = 2.0});
   m.add<Inertia>("J_b", {"b"}, {.inertia = 3.0});
   m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = 1e4, .damping = damping});
-  m.add<EngineOrderTorque>(
-      "gas", {"a"},
-      {.harmonics = {{1.0, 50.0, deg(10.0)}, {2.0, 40.0, deg(50.0)}, {3.0, 30.0, deg(100.0)}},
-       .mean = 100.0,
-       .twist_feedback = false});
+  m.add<EngineOrderTorque>("gas", {"a"}, {.harmonics = harmonics, .mean = 100.0, .twist_feedback = false});
   m.add<EngineOrderTorque>("load", {"b"}, {.mean = -100.0, .twist_feedback = false});
   return m.build();
 }
@@ -60,6 +60,68 @@ TEST_CASE("Twist, heat and extremes are taken at the peaks between the speeds", 
   CHECK(peak.heat == Approx(90.00031947).epsilon(1e-6));
   CHECK(std::abs(peak.mean) == Approx(100.0).epsilon(1e-9));
   CHECK(0.5 * (peak.maximum - peak.minimum) == Approx(peak.half_range).epsilon(1e-12));
+}
+
+TEST_CASE("The largest heat is that of the highest top, not of the highest point, and may be beside an end",
+          "[sweep_peaks]") {
+  // Heat c W^2 |x|^2 / 2 of mu x'' + c x' + k x = mu/J_a p over the orders.
+  constexpr double k = 1e4, mu = 1.2;
+  const double natural = std::sqrt(k / mu);
+  const auto heat_of_order = [&](double c, double W, double p) {
+    return 0.5 * c * W * W * std::norm(mu / 2.0 * p / Complex(k - mu * W * W, c * W));
+  };
+  // A speed of the sweep is at the top of order 4; all points about the higher one of order 1 are lower.
+  const double c = 0.6 * std::sqrt(k * mu), first = 48.5, fourth = 48.0;
+  double best = 0.0, at = 0.0;
+  for (double w = 80.0; w < 100.0; w += 1e-3) {
+    const double heat = heat_of_order(c, w, first) + heat_of_order(c, 4.0 * w, fourth);
+    if (heat > best) best = heat, at = w;
+  }
+  const LinearSweep two = sweep_linear(two_discs(c, {{1.0, first, 0.0}, {4.0, fourth, 0.0}}),
+                                       {.speeds = {10.0, natural / 4.0, 45.0, 130.0}, .orders = {1.0, 4.0}});
+  CHECK(two.sections[0].heat_peak == Approx(best).epsilon(1e-9));
+  CHECK(two.sections[0].heat_peak_speed == Approx(at).margin(2e-3));
+  // Overdamped: no order has a resonance, and the top p'^2 / (2 c) at the natural frequency is between the last two speeds,
+  // of which the last has the more heat.
+  const double strong = 2.0 * std::sqrt(k * mu), force = mu / 2.0 * 50.0;
+  const LinearSweep end = sweep_linear(two_discs(strong, {{1.0, 50.0, 0.0}}),
+                                       {.speeds = {30.0, 60.0, natural + 3.0}, .orders = {1.0}});
+  CHECK(end.sections[0].heat_peak == Approx(0.5 * force * force / strong).epsilon(1e-10));
+  CHECK(end.sections[0].heat_peak_speed == Approx(natural).epsilon(1e-6));
+}
+
+TEST_CASE("Peaks and heat of modes that coincide are located", "[sweep_peaks]") {
+  // Six equal branches on a hub, with torques that add up to nothing: the hub stands still, each branch is one of its own.
+  constexpr int branches = 6;
+  constexpr double k = 2e4, J = 0.5, p = 100.0;
+  const double c = 0.2 * 2.0 * std::sqrt(k * J);
+  Model m("star");
+  m.add_node("hub");
+  m.set_reference("hub", constant_speed(rpm(1000.0)));
+  m.add<Inertia>("J_hub", {"hub"}, {.inertia = 0.2});
+  for (int b = 0; b < branches; ++b) {
+    const std::string n = std::to_string(b), node = "b" + n;
+    m.add_node(node);
+    m.add<Inertia>("J" + n, {node}, {.inertia = J});
+    m.add<ShaftSpring>("k" + n, {"hub", node}, {.stiffness = k, .damping = c});
+    m.add<EngineOrderTorque>("t" + n, {node},
+                             {.harmonics = {{1.0, p, deg(60.0 * b)}}, .twist_feedback = false});
+  }
+  const auto torque = [&](double w) {
+    const Complex z(k, c * w);
+    return std::abs(z * p / (z - J * w * w));
+  };
+  double best = 0.0, at = 0.0;
+  for (double w = 180.0; w < 210.0; w += 1e-3)
+    if (torque(w) > best) best = torque(w), at = w;
+  const LinearSweep sweep =
+      sweep_linear(m.build(), {.speeds = rpm_speeds(100.0, 100.0, 3000.0), .orders = {1.0}});
+  for (int b = 0; b < branches; ++b) {
+    const SweepLargest half = largest_half_range(sweep, b);
+    CHECK(half.value == Approx(best).epsilon(1e-9));
+    CHECK(half.speed == Approx(at).margin(2e-3));
+    CHECK(largest_heat(sweep, b).value == Approx(0.5 * p * p / c).epsilon(1e-10));
+  }
 }
 
 TEST_CASE("An order that meets an undamped mode is an infinite peak at their speed", "[sweep_peaks]") {

@@ -1,9 +1,11 @@
 // Covers solvers/strength/class_judgement.hpp and solvers/strength/exceeded_ranges.hpp: ranges, limits and chatter of sweeps whose answers are known.
 #include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
+#include <drev/elements/catalogue.hpp>
 #include <drev/solvers/strength/class_judgement.hpp>
 
 #include <cmath>
+#include <complex>
 
 #include "solvers/strength/iacs_m68.hpp"
 #include "tests/catch.hpp"
@@ -277,6 +279,51 @@ TEST_CASE("Ends are where the solved sweep crosses the limit, those of torque an
   CHECK(found.chatter[0].range.from == Approx(150.0 - 20.509949116).epsilon(1e-7));
   CHECK(found.chatter[0].range.to == Approx(150.0 + 19.171672957).epsilon(1e-7));
   CHECK(rounds < 25);
+}
+
+TEST_CASE("The largest utilisation is followed to its top where the limit falls with the speed",
+          "[strength]") {
+  // Two discs of 20 and 30 t m^2 on a shaft of 20 MN m/rad and 0.34 m, judged by UR M68.5 (600 MPa, C_K 0.6).
+  constexpr double k = 20e6, first = 20e3, second = 30e3, order = 5.0, mu = first * second / (first + second);
+  const double c = 0.2 * std::sqrt(k * mu);
+  Strength strength;
+  strength.sections = {shaft_of(0.34)};
+  strength.sections[0].tensile_strength = 600e6, strength.sections[0].shape_factor = 0.6;
+  strength.rated_speed = rpm(100.0);
+  const auto used = [&](double w) {  // of a torque of 1 N m
+    const double W = order * w;
+    const std::complex<double> z(k, W * c);
+    return std::abs(z * mu / first / (z - mu * W * W)) /
+           torque_limit(strength.sections[0], w / strength.rated_speed).continuous;
+  };
+  double top = 0.0, at = 0.0;
+  for (double n = 60.0; n < 100.0; n += 1e-3)
+    if (used(rpm(n)) > top) top = used(rpm(n)), at = n;
+  constexpr double largest = 1.0046;
+  Model m("ship");
+  m.add_node("engine");
+  m.add_node("propeller");
+  m.set_reference("engine", constant_speed(rpm(100.0)));
+  m.add<Inertia>("J_e", {"engine"}, {.inertia = first});
+  m.add<Inertia>("J_p", {"propeller"}, {.inertia = second});
+  m.add<ShaftSpring>("shaft", {"engine", "propeller"}, {.stiffness = k, .damping = c});
+  m.add<EngineOrderTorque>("gas", {"engine"},
+                           {.harmonics = {{order, largest / top, 0.0}}, .twist_feedback = false});
+  const System system = m.build();
+  LinearSweepOptions options{.orders = {order}};
+  for (double n = 30.0; n < 101.0; n += 5.0) options.speeds.push_back(rpm(n));
+  const LinearSweep sweep = sweep_linear(system, options);
+  const ClassJudgement found = judge_sweep(sweep, strength, sweep_between(system, options));
+  const SectionJudgement& s = found.sections.front();
+  CHECK(s.utilisation == Approx(largest).epsilon(1e-8));
+  CHECK(to_rpm(s.utilisation_speed) == Approx(at).margin(2e-3));
+  CHECK(found.verdict() == ClassJudgement::Verdict::exceeded);
+  REQUIRE(s.exceeded.size() == 1);
+  CHECK(used(s.exceeded[0].from) == Approx(top / largest).epsilon(1e-6));
+  CHECK(used(s.exceeded[0].to) == Approx(top / largest).epsilon(1e-6));
+  CHECK(s.exceeded[0].worst == s.utilisation);
+  // The sweep alone has it at its speeds and at the peak of the torque only.
+  CHECK(judge_sweep(sweep, strength).verdict() == ClassJudgement::Verdict::within);
 }
 
 TEST_CASE("Faults of strength data are listed at once", "[strength]") {
