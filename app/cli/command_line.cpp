@@ -7,6 +7,7 @@
 #include <cctype>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <sstream>
 
 #include "app/base/text_layout.hpp"
@@ -77,9 +78,21 @@ std::string option_hint(const std::string& name, const CLI::App& sub) {
   return did_you_mean(name, names);
 }
 
+/// How a NAME=VALUE behind no option must be written: by the option that the ones before it belong to (--vary A=1:2 B=3:4), or
+/// by --set.
+std::string must_be_written(const std::string& word, const std::vector<std::string>& words) {
+  const auto has_no_equals = [](const std::string& before) { return before.find('=') == std::string::npos; };
+  const std::reverse_iterator end(std::find(words.begin(), words.end(), word));
+  const auto option = std::find_if(end, words.rend(), [&](const std::string& before) {
+    return looks_like_option(before) || has_no_equals(before);
+  });
+  const bool belongs = option != words.rend() && option != end && looks_like_option(*option);
+  return "must be written " + (belongs ? option->substr(0, option->find('=')) : "--set") + " " + word;
+}
+
 /// What stands on the command line and is known to nobody.
 void report_extras(const std::vector<std::string>& extras, const CLI::App& sub,
-                   std::vector<Finding>& findings) {
+                   const std::vector<std::string>& words, std::vector<Finding>& findings) {
   bool unknown_option = false;
   for (const std::string& extra : extras) {
     if (!looks_like_option(extra)) continue;
@@ -92,7 +105,7 @@ void report_extras(const std::vector<std::string>& extras, const CLI::App& sub,
   for (const std::string& extra : extras)
     findings.push_back(
         {kCommandLine, "argument", extra, "",
-         extra.find('=') == std::string::npos ? "is one too many" : "must be written --set " + extra});
+         extra.find('=') == std::string::npos ? "is one too many" : must_be_written(extra, words)});
 }
 
 bool names_model(const std::string& word) {
@@ -101,8 +114,8 @@ bool names_model(const std::string& word) {
 }
 
 /// A word behind an option that does not exist is its value rather than one of several models.
-void drop_values_of_unknown(int argc, char** argv, const std::vector<std::string>& extras, Raw& raw) {
-  const std::vector<std::string> words(argv, argv + argc);
+void drop_values_of_unknown(const std::vector<std::string>& words, const std::vector<std::string>& extras,
+                            Raw& raw) {
   for (const std::string& extra : extras) {
     const auto option = std::find(words.begin(), words.end(), extra);
     if (!looks_like_option(extra) || extra.find('=') != extra.npos || words.end() - option < 2) continue;
@@ -124,10 +137,10 @@ void find_models_among_sets(Raw& raw, bool several) {
 }
 
 /// MODEL a=1: a parameter without --set.
-void find_sets_among_models(Raw& raw, std::vector<Finding>& findings) {
+void find_sets_among_models(Raw& raw, const std::vector<std::string>& words, std::vector<Finding>& findings) {
   std::erase_if(raw.models, [&](const std::string& word) {
     const bool set = word.find('=') != std::string::npos && !names_model(word);
-    if (set) findings.push_back({kCommandLine, "argument", word, "", "must be written --set " + word});
+    if (set) findings.push_back({kCommandLine, "argument", word, "", must_be_written(word, words)});
     return set;
   });
 }
@@ -264,9 +277,10 @@ ParsedCommandLine parse_command_line(int argc, char** argv, const std::vector<Co
                     [&](const CommandEntry& entry) { return entry.name == sub.get_name(); });
   CommandLine line{.command = &command, .json = raw.json, .quiet = raw.quiet};
   if (!raw.model.empty()) raw.models = {raw.model};
-  drop_values_of_unknown(argc, argv, sub.remaining(), raw);
+  const std::vector<std::string> words(argv, argv + argc);
+  drop_values_of_unknown(words, sub.remaining(), raw);
   find_models_among_sets(raw, command.takes_models);
-  find_sets_among_models(raw, line.findings);
+  find_sets_among_models(raw, words, line.findings);
   if (!raw.models.empty()) line.model = raw.models.front();
   if (command.takes_models) line.options["MODEL"] = raw.models;
   if (chosen.size() > 1)
@@ -275,7 +289,7 @@ ParsedCommandLine parse_command_line(int argc, char** argv, const std::vector<Co
   for (const std::string& word : app.remaining())
     line.findings.push_back({kCommandLine, looks_like_option(word) ? "option" : "argument", word, "",
                              "must stand after the command " + sub.get_name()});
-  report_extras(sub.remaining(), sub, line.findings);
+  report_extras(sub.remaining(), sub, words, line.findings);
   take_sets(raw, line);
   for (const OptionEntry& option : command.options) take_option(option, raw.options[option.name], line);
   return {.command = std::move(line)};

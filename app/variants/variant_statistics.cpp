@@ -49,10 +49,16 @@ double VariantStatistics::bin_of(std::size_t figure, double value) const {
 }
 
 void VariantStatistics::look_again(const double* row) {
-  if (bins_.empty()) bins_.assign(figures_.size(), std::vector<std::uint64_t>(kBins));
-  for (std::size_t f = 0; f < figures_.size(); ++f)
-    if (std::isfinite(row[1 + f]))
-      ++bins_[f][std::min(kBins - 1, static_cast<std::size_t>(bin_of(f, row[1 + f]) * kBins))];
+  if (bins_.empty()) {
+    bins_.assign(figures_.size(), std::vector<std::uint64_t>(kBins));
+    values_.resize(figures_.size());
+  }
+  for (std::size_t f = 0; f < figures_.size(); ++f) {
+    const double value = row[1 + f];
+    if (!std::isfinite(value)) continue;
+    ++bins_[f][std::min(kBins - 1, static_cast<std::size_t>(bin_of(f, value) * kBins))];
+    if (figures_[f].count <= kBins) values_[f].push_back(value);
+  }
 }
 
 void VariantStatistics::finish() {
@@ -62,7 +68,14 @@ void VariantStatistics::finish() {
     const auto n = static_cast<double>(s.count);
     if (s.count > 1) s.deviation = std::sqrt(squares_[f] / (n - 1.0));
     if (independent_) s.mean_error = kNormal95 * s.deviation / std::sqrt(n);
-    const auto at_rank = [&](double rank) {  // the value that `rank` values do not exceed, to within a bin
+    std::sort(values_[f].begin(), values_[f].end());
+    const auto at_rank = [&](double rank) {  // the value that `rank` values do not exceed
+      if (!values_[f].empty()) {  // the i-th value stands at the rank i - 1/2: the median is the middle one
+        const double place = std::clamp(rank - 0.5, 0.0, n - 1.0);
+        const auto i = static_cast<std::size_t>(place);
+        const double above = values_[f][std::min(i + 1, values_[f].size() - 1)];
+        return std::lerp(values_[f][i], above, place - static_cast<double>(i));
+      }
       double below = 0.0;
       std::size_t bin = 0;
       while (bin + 1 < kBins && below + static_cast<double>(bins_[f][bin]) < rank)

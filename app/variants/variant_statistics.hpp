@@ -1,7 +1,8 @@
 #pragma once
 /// Statistics of a study's rows: the number of variants with each status, and for each figure mean, standard
 /// deviation, extremes with their variants, quantiles, a histogram and Sobol indices. They take two passes
-/// over the rows in order, and memory that does not grow with the number of rows.
+/// over the rows in order, and memory that does not grow with the number of rows: quantiles of up to kBins values are exact, of
+/// more to a bin, 1/kBins of the range.
 #include <array>
 #include <cstdint>
 #include <string>
@@ -51,6 +52,7 @@ class VariantStatistics {
   std::array<std::uint64_t, kVariantStatuses> statuses_{};
   std::vector<double> squares_;                       // sums of squared distances from the mean
   std::vector<std::vector<std::uint64_t>> bins_;      // counts in kBins bins from min to max
+  std::vector<std::vector<double>> values_;           // of figures that have at most kBins of them
   std::size_t group_ = 0;                             // number of rows of a block of saltelli; 0: none
   std::vector<SobolIndices> indices_;                 // Sobol indices of each figure
   std::vector<std::vector<double>> values_of_group_;  // values of each figure in the block

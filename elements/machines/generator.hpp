@@ -9,9 +9,9 @@
 /// Undamped swing of the rotor J alone: sqrt(k_s/J). k_s and c_s act during the fault too. The air-gap torque of a
 /// short circuit at the terminals: A_1 at the grid's frequency w_e = 2 pi f, A_2 at twice of it (two-phase; 0 for
 /// three-phase), both decaying with T; usual values A_1 = torque/x'', from the maker. Without k_s: an island set, on
-/// which a speed governor acts. Inertia is an Inertia beside it.
-/// Source: W. Nuernberg, R. Hanitsch, Die Pruefung elektrischer Maschinen, 6th ed., Springer, 1987 (form of the
-/// short-circuit torque); numbers are the maker's.
+/// which a speed governor acts. Inertia is an Inertia beside it. Torque channels: _gap, a load's, is tau without k_s and c_s;
+/// _synchronous, as a spring's, is k_s q + c_s q' of the LEFT side: tau = _gap - _synchronous.
+/// Source: W. Nuernberg, R. Hanitsch, Die Pruefung elektrischer Maschinen, 1987 (short-circuit torque); numbers: the maker's.
 #include <drev/core/element_interface.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>

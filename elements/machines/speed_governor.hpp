@@ -4,8 +4,8 @@
 ///   tau = -K_p q' - K_i q           on the RIGHT side; q' = w - w_n, q = int (w - w_n) dt, q = 0 at t = 0
 ///
 /// K_p: proportional gain, or from the speed droop: K_p = rated_torque/(droop rated_speed). K_i: integral gain, which
-/// takes the lasting deviation away; 0 leaves the droop. The integral of the speed's deviation is the deviation of the
-/// angle, so that the governor is linear, in every method, exactly. LIMIT: limits of the torque are left out.
+/// takes the lasting deviation away; 0 leaves the droop. Its integral is the deviation of the angle: the governor is linear, in
+/// every method, exactly. Channel: -tau, of the LEFT side, as a spring's. LIMIT: limits of the torque are left out.
 ///
 /// An actuator with a lag T follows by T tau' + tau = -K_p q' - K_i q. Without one the governor acts at vibratory
 /// frequencies like a damper of K_p, which a real one does not. The lag is one node more (`ELEMENT_1`), whose matrices

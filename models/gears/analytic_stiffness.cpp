@@ -145,7 +145,7 @@ IsoStiffness iso_mesh_stiffness(const GearPair& pair, double load) {
                         .pressure_angle = g.pressure_angle,
                         .helix_angle = g.helix_angle,
                         .contact_ratio = pair.contact_ratio(),
-                        .load = load});
+                        .load = load * std::cos(pair.transverse_angle())});
 }
 
 }  // namespace drev

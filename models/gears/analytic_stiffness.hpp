@@ -43,7 +43,8 @@ struct IsoStiffnessInput {
   double pressure_angle = 0.349065850398866;  ///< of the rack, normal, rad
   double helix_angle = 0.0;                   ///< rad
   double contact_ratio = 1.0;                 ///< eps_alpha
-  double load = 100e3;                        ///< w, N/m; below 100 N/mm c' falls with (w/(100 N/mm))^0.25
+  /// F_t/b, tangential at the reference circle, N/m; below 100 N/mm c' falls with (F_t/b/(100 N/mm))^0.25.
+  double load = 100e3;
 };
 struct IsoStiffness {
   double theoretical = 0.0;  ///< c'_th, N/m per m
@@ -54,6 +55,7 @@ struct IsoStiffness {
 };
 /// Outside the validity (x_1 >= x_2, -0.5 <= x_1 + x_2 <= 2) figures are given all the same, and `outside` says so.
 IsoStiffness iso_mesh_stiffness(const IsoStiffnessInput& input);
+/// `load`: w along the transverse line of action, as for the other methods; F_t/b = w cos(alpha_t), with a helix too.
 IsoStiffness iso_mesh_stiffness(const GearPair& pair, double load);
 
 }  // namespace drev

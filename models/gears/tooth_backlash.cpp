@@ -27,8 +27,9 @@ Backlash::Backlash(const GearPair& pair, const BacklashTolerances& tolerances) {
   check.within("housing_temperature_rise", tolerances.housing_temperature_rise, -300.0, 1000.0, "K");
   check.within("housing_expansion", tolerances.housing_expansion, 0.0, 1e-3, "1/K");
   stop();
-  const double cosine = std::cos(pair.operating_angle()),
-               thinning = cosine / std::cos(pair.geometry().helix_angle);
+  const double cosine = std::cos(pair.operating_angle());
+  // A tooth thinner by A on its reference cylinder frees r_b/r A of the line of action, whatever the centre distance.
+  const double thinning = std::cos(pair.transverse_angle()) / std::cos(pair.geometry().helix_angle);
   const double opening = 2.0 * std::sin(pair.operating_angle());
   const double apart = pair.geometry().internal ? -1.0 : 1.0;  // a ring's teeth close as the axes part
   double widening =

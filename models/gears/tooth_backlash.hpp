@@ -1,12 +1,13 @@
 #pragma once
 /// Backlash of a gear pair from tolerances of tooth thickness and centre distance, at working temperature.
 ///
-///   j_t = play + sum over both gears (-A_s)/cos(beta) + 2 tan(alpha_wt) (da + th),   A_sne - T_sn <= A_s <= A_sne
-///   th  = a alpha_h dT_h - r_w1 alpha_1 dT_1 - r_w2 alpha_2 dT_2,   -A_a <= da <= A_a,     j_bn = j_t cos(alpha_wt)
+///   j_bn = play + cos(alpha_t)/cos(beta) sum over both gears (-A_s) + 2 sin(alpha_wt) (da + th)
+///   th   = a alpha_h dT_h - r_w1 alpha_1 dT_1 - r_w2 alpha_2 dT_2,   A_sne - T_sn <= A_s <= A_sne,   -A_a <= da <= A_a
 ///   ring: th = -a alpha_h dT_h - r_w1 alpha_1 dT_1 + r_w2 alpha_2 dT_2
 ///
 /// play: what centre distance and shifts leave without tolerances (GearPair). A_s: deviation of the normal tooth thickness
-/// from its value without backlash, negative where the tooth is thinner. Widening by temperature: to first order.
+/// on the reference cylinder from its value without backlash, negative where the tooth is thinner. Widening by temperature:
+/// to first order.
 /// Percentiles: the two thicknesses and the centre distance are independent and evenly distributed over their ranges.
 /// Allowances and tolerances by class (e.g. DIN 3967:1978, centre distances DIN 3964:1980) are entered as numbers: the tables
 /// of the standards are under copyright. Source: DIN 3967:1978 (relations); ISO/TR 10064-2:1996.

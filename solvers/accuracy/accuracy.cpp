@@ -374,7 +374,11 @@ AccuracyResult run_to_accuracy(const System& system, const AccuracyOptions& o) {
   check.positive("most_seconds", o.most_seconds, "s");
   check.within("start_error", o.start_error, 0.0, 1.0, "");
   if (o.ensemble < 2) check.fail("ensemble", std::to_string(o.ensemble), "runs", "must be at least 2");
-  if (!o.method.exact() && !o.method.controlled()) check.positive("method.step", o.method.step, "s");
+  if (!o.method.exact() && !o.method.controlled() && !(o.method.step > 0.0 && std::isfinite(o.method.step)))
+    check.fail("method.step", to_text(o.method.step), "s",
+               "must be > 0 for " + o.method.name +
+                   " with constant steps; method.tolerance > 0 controls them, "
+                   "and method.name = \"exact\" needs none");
   if (o.method.exact())
     if (const auto why = why_not_exact(system)) check.fail("method", kExact, "", *why);
   if (system.size() == 0) check.fail("unknowns", "0", "", "must be at least one");

@@ -14,6 +14,7 @@
 #include "solvers/run/control_run.hpp"
 #include "solvers/run/energy_monitor.hpp"
 #include "solvers/run/progress.hpp"
+#include "solvers/run/run_checks.hpp"
 #include "solvers/run/run_verdict.hpp"
 #include "solvers/run/stops.hpp"
 
@@ -476,6 +477,7 @@ class ExactRun final : public StepMotion {
 RunSummary propagate(const System& system, const ExactOptions& options, State& state,
                      const std::vector<Observer*>& observers) {
   check_propagation(system, options, state);
+  check_observers(observers, system.name() + "/exact");
   ExactRun run(system, options, state, observers);
   try {
     RunSummary summary = run.run();

@@ -72,6 +72,11 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
                            ": the eigenproblem is dense"}});
   const Assembler assembler(system);
   Vector values;
+  if (const Eigen::Index places = system.pattern().nonZeros();
+      options.damping.size() > 0 && options.damping.size() != places)
+    throw ModelError(
+        {{system.name() + "/damped modes", "damping", std::to_string(options.damping.size()), "values",
+          "must have " + std::to_string(places) + ", one for each place of the system's pattern, or none"}});
   const CholeskyFactor mass(dense(system.pattern(), system.mass_values()));
   if (!mass.positive_definite())
     throw SolverError("damped modes of " + system.name() + ": mass matrix not positive definite");

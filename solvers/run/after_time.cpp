@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "solvers/run/run_checks.hpp"
 #include "solvers/run/stops.hpp"
 
 namespace drev {
 
 AfterTime::AfterTime(double begin, std::vector<Observer*> observers)
-    : begin_(begin), observers_(std::move(observers)) {}
+    : begin_(begin), observers_(std::move(observers)) {
+  check_observers(observers_, "observers from a time on");
+}
 
 void AfterTime::start(const Assembler& assembler, const EvaluatedState& point) {
   started_ = point.state.t >= begin_;

@@ -10,6 +10,15 @@ void check_span(double t_start, double t_end, ParameterCheck& check) {
     check.fail("t_end", to_text(t_end), "s", "must be greater than t_start = " + to_text(t_start));
 }
 
+void check_observers(const std::vector<Observer*>& observers, const std::string& place) {
+  std::vector<Finding> findings;
+  ParameterCheck check(place, findings);
+  for (std::size_t i = 0; i < observers.size(); ++i)
+    if (observers[i] == nullptr)
+      check.fail("observers[" + std::to_string(i) + "]", "null", "", "must point to an observer");
+  if (!findings.empty()) throw ModelError(std::move(findings));
+}
+
 void check_state(const System& system, const State& state, ParameterCheck& check) {
   if (state.z.size() != system.size() || state.v.size() != system.size())
     check.fail("state", std::to_string(state.z.size()), "unknowns",

@@ -1,7 +1,11 @@
 // Propeller, TorqueCurve, Generator, SpeedGovernor, PlanetarySet: tangents, signs, bad input.
+#include <drev/core/assembler.hpp>
+#include <drev/core/channel.hpp>
 #include <drev/core/element.hpp>
+#include <drev/core/model.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/gears/planetary_set.hpp>
+#include <drev/elements/inertia.hpp>
 #include <drev/elements/machines/generator.hpp>
 #include <drev/elements/machines/propeller.hpp>
 #include <drev/elements/machines/speed_governor.hpp>
@@ -79,6 +83,32 @@ TEST_CASE("Speed governor: gains and droop") {
     CHECK(test::contains(text, part));
   CHECK(test::contains(test::findings(SpeedGovernor({.proportional_gain = 1.0, .droop = 0.1})),
                        "give one of them"));
+}
+
+TEST_CASE("Torque channels of governor and generator: a spring's sign, and that of a load") {
+  for (const double lag : {0.0, 0.2}) {
+    Model model("signs");
+    for (const char* node : {"governed", "generating"}) {
+      model.add_node(node);
+      model.add<Inertia>(std::string("J_") + node, {node}, {.inertia = 3.0});
+      model.set_initial(node, 0.01, 2.0);
+    }
+    model.add<SpeedGovernor>("governor", {"governed"},
+                             {.proportional_gain = 600.0, .integral_gain = 1500.0, .actuator_lag = lag});
+    model.add<Generator>("generator", {"generating"},
+                         {.torque = 10.0, .synchronous_stiffness = 2000.0, .synchronous_damping = 7.0});
+    const System system = model.build();
+    Assembler assembler(system);
+    const State state = State::initial(system, 0.0);
+    assembler.set_time(0.0);
+    const auto channel = [&](const char* name) {
+      return find_channel(system, name).evaluate(assembler, state);
+    };
+    // Ahead of the nominal motion and faster than it: a governor brakes (one with a lag has not begun), and so does the grid.
+    if (lag == 0.0) CHECK(channel("governor.torque_Nm") == Approx(600.0 * 2.0 + 1500.0 * 0.01));
+    CHECK(channel("generator_synchronous.torque_Nm") == Approx(2000.0 * 0.01 + 7.0 * 2.0));
+    CHECK(channel("generator_gap.torque_Nm") == -10.0);
+  }
 }
 
 TEST_CASE("Planetary set: its row, and bad input") {

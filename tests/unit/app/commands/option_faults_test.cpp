@@ -28,6 +28,12 @@ const std::vector<OptionFault>& faults() {
       {{"modes", "two_inertia", "camshaft"}, {"camshaft", "one too many"}},
       {{"run", "two_inertia", "camshaft"}, {"--out", "needed for several runs"}},
       {{"run", "two_inertia", "duration_s=1"}, {"--set duration_s=1"}},
+      {{"run", "gear_drive", "--vary", "backlash_mm=0:0.1:0.2", "engine_rpm=700:10:750"},
+       {"must be written --vary engine_rpm=700:10:750"}},
+      {{"optimise", "gear_drive", "--vary", "backlash_mm=0:0.1:0.2", "engine_rpm=700:10:750"},
+       {"must be written --vary engine_rpm=700:10:750"}},
+      {{"run", "gear_drive", "--duration", "0.01", "engine_rpm=700"},
+       {"must be written --set engine_rpm=700"}},
       {{"--json", "run", "two_inertia"}, {"--json", "after the command run"}},
       {{"run", "modes"}, {"modes", "give one command"}},
       // options

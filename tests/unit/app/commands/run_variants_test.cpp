@@ -92,6 +92,26 @@ TEST_CASE("A table's figures are those of single runs of its variants") {
   CHECK(compared >= 10);
 }
 
+TEST_CASE("Quantiles of few variants are exact") {
+  const TemporaryFolder folder;
+  const auto run =
+      drev_command({"run", "gear_drive", "--vary", "torque_mean_Nm=-4000,-8000", "--duration", "0.02",
+                    "--step", "1e-5", "--table", "--json", "--out", (folder / "r").string()});
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  int differ = 0;
+  for (const Json& figure : Json::parse(run.out).at("figures")) {
+    const double low = figure.at("min").at("value"), high = figure.at("max").at("value");
+    for (const Json& quantile : figure.at("quantiles")) {
+      const double part = quantile.at("part");
+      const double value = part < 0.25 ? low : part > 0.75 ? high : 0.5 * (low + high);
+      CHECK(quantile.at("value").get<double>() == Approx(value).epsilon(1e-14));
+    }
+    differ += low < high;
+  }
+  CHECK(differ >= 3);
+}
+
 TEST_CASE("A table is the same on any number of threads, and one that is complete is not computed again") {
   const TemporaryFolder folder;
   const auto one = drev_command(study((folder / "one").string(), "0:0.05:0.4", {"--jobs", "1"}));

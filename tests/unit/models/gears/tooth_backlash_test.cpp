@@ -2,6 +2,7 @@
 #include <drev/core/error.hpp>
 #include <drev/models/gears/tooth_backlash.hpp>
 
+#include <array>
 #include <cmath>
 
 #include "tests/catch.hpp"
@@ -22,6 +23,28 @@ TEST_CASE("Backlash from allowances, tolerances and centre distance", "[gears]")
   // The source's .15 and .43 mm as half gaps along the line of action, 20 and 16.16 degrees.
   CHECK(std::abs(0.5 * 150e-6 * cosine - 70.5e-6) < 0.05e-6);
   CHECK(std::abs(0.5 * 430e-6 * std::cos(GearPair(gear_pairs::t1()).operating_angle()) - 206.5e-6) < 0.05e-6);
+}
+
+TEST_CASE("Thinner teeth leave the backlash of the profile shifts that make them as thin", "[gears]") {
+  // Thickness on the reference cylinder, exactly: m (pi/2 + 2 x tan(alpha_n)).
+  GearGeometry helical = gear_pairs::pair(4, 25, 50, 0.5, 0.5, -0.27, 163.5e-3);
+  helical.helix_angle = 20.0 * 3.14159265358979323846 / 180.0;
+  for (const GearGeometry& drawing :
+       {gear_pairs::t1(0.49700709762), gear_pairs::pair(4, 25, 50, 0.5, 0.5, -0.27, 153.68e-3),
+        gear_pairs::pair(4, 25, 50, 0.0, 0.0, 0.0, 150e-3), helical}) {
+    const std::array<double, 2> thinner{90e-6, 70e-6};
+    GearGeometry shifted = drawing;
+    for (const int i : {0, 1}) {
+      GearData& gear = i == 0 ? shifted.gear_1 : shifted.gear_2;
+      gear.tip_diameter = 2.0 * GearPair(drawing).contour(i).usable_tip_radius();
+      gear.profile_shift -=
+          thinner[static_cast<std::size_t>(i)] / (2.0 * shifted.module * std::tan(shifted.pressure_angle));
+    }
+    const double allowed =
+        Backlash(GearPair(drawing), {.thickness = {{{-thinner[0], 0.0}, {-thinner[1], 0.0}}}}).lowest();
+    INFO(drawing.module << " m, " << drawing.gear_1.teeth << " teeth: " << allowed << " m");
+    CHECK(std::abs(allowed - GearPair(shifted).normal_backlash()) < 1e-12);
+  }
 }
 
 TEST_CASE("Percentiles of the backlash", "[gears]") {

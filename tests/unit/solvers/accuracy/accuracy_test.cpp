@@ -126,5 +126,9 @@ TEST_CASE("Accuracy: every fault of the options at once") {
     FAIL("nothing was refused");
   } catch (const ModelError& error) {
     CHECK(error.findings().size() == 6);  // from, too: not before an end at 0
+    // The default method has no step: what there is to set is said.
+    const std::string text = error.what();
+    for (const char* part : {"method.step = 0 s", "method.tolerance > 0", "\"exact\""})
+      CHECK(text.find(part) != std::string::npos);
   }
 }

@@ -171,6 +171,19 @@ TEST_CASE("Undamped frequencies are those of solve_modes; the limit is kept", "[
     CHECK(damped.shapes.col(j).imag().norm() < 1e-9);
   }
   CHECK_THROWS_AS(solve_damped_modes(system, {.size_limit = 19}), ModelError);
+  const auto places = static_cast<int>(system.pattern().nonZeros());
+  for (const int size : {1, 20, places + 1}) {  // 20 unknowns: values of the pattern, not of the unknowns
+    INFO(size << " values");
+    try {
+      solve_damped_modes(system, {.damping = Vector::Zero(size)});
+      FAIL("a damping of another size was taken");
+    } catch (const ModelError& error) {
+      CHECK(std::string(error.what())
+                .find("damping = " + std::to_string(size) + " values, must have " + std::to_string(places)) !=
+            std::string::npos);
+    }
+  }
+  CHECK(solve_damped_modes(system, {.damping = Vector::Zero(places)}).modes.size() == damped.modes.size());
 }
 
 TEST_CASE("A soft coupling beside a stiff shaft with next to no inertia is not refused", "[damped_modes]") {

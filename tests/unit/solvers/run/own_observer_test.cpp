@@ -1,6 +1,8 @@
 // An observer of one's own (solvers/run/own_observer.hpp), as that header shows it.
+#include <drev/core/error.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/method.hpp>
+#include <drev/solvers/run/after_time.hpp>
 #include <drev/solvers/run/own_observer.hpp>
 
 #include <algorithm>
@@ -37,4 +39,16 @@ TEST_CASE("An observer of one's own sees every step, by every kind of method") {
     CHECK(speed.value == Approx(1.0).epsilon(1e-3));
     CHECK(speed.value <= 1.0 + 1e-9);
   }
+}
+
+TEST_CASE("An observer that is null is refused with its place in the list") {
+  Model model("disc");
+  model.add_node("disc");
+  model.add<Inertia>("J", {"disc"}, {.inertia = 2.0});
+  const System system = model.build();
+  LargestSpeed speed;
+  for (const Method& method : {Method{.name = kExact, .tolerance = 1e-10}, Method{.step = 1e-2}})
+    CHECK_THROWS_WITH(run_method(system, method, {.t_end = 1.0}, {&speed, nullptr}),
+                      Catch::Contains("observers[1] = null, must point to an observer"));
+  CHECK_THROWS_AS(AfterTime(0.5, {nullptr}), ModelError);
 }
