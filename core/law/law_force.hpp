@@ -5,8 +5,8 @@
 ///   template <class T> T force(const T& x, const T& x_dot) const          y(x, x_dot) over any scalar
 ///     The slopes come from the same formula by dual numbers (dual.hpp); dissipated power = (y - y at rest)
 ///     x_dot. Optional: double stored_energy(double x) const, J, whose derivative is y at rest. Without it
-///     the energy is the integral of y at rest from x = 0, by 8 Gauss points between kinks: exact to degree
-///     15, but it costs as many calls.
+///     the energy is the integral of y at rest from x = 0 to rounding (quadrature.hpp), which costs 16 calls
+///     and more where y is no polynomial.
 ///   pieces() const: a vector or span of LawPiece
 ///     Everything else follows from them (PiecewiseLaw).
 ///   ScalarResponse operator()(const ScalarInput&) const
@@ -16,9 +16,9 @@
 /// Optional members are used where the law has them: kinks(), gap(), closed_stiffness(), closed_damping().
 #include <drev/core/law/dual.hpp>
 #include <drev/core/law/piecewise_law.hpp>
+#include <drev/core/law/quadrature.hpp>
 #include <drev/core/scalar_force.hpp>
 
-#include <array>
 #include <concepts>
 
 namespace drev {
@@ -38,24 +38,6 @@ concept LawWithPieces = requires(const L& law) {
 };
 template <class L>
 concept ScalarLaw = CalledLaw<L> || FormulaLaw<L> || LawWithPieces<L>;
-
-/// Gauss's rule of 8 points on [-1, 1]: those above zero, which stand below it too.
-inline constexpr std::array<double, 4> kGaussPoints{0.1834346424956498, 0.5255324099163290,
-                                                    0.7966664774136267, 0.9602898564975363};
-inline constexpr std::array<double, 4> kGaussWeights{0.3626837833783620, 0.3137066458778873,
-                                                     0.2223810344533745, 0.1012285362903763};
-
-/// int_a^b f dx by 8 Gauss points.
-template <class F>
-double gauss_integral(const F& f, double a, double b) {
-  constexpr const auto& x = kGaussPoints;
-  constexpr const auto& w = kGaussWeights;
-  const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    sum += w[i] * (f(middle - half * x[i]) + f(middle + half * x[i]));
-  return half * sum;
-}
 
 template <ScalarLaw L>
 class LawForce final : public ScalarForce {
@@ -113,18 +95,7 @@ class LawForce final : public ScalarForce {
     if constexpr (requires { law_.stored_energy(x); }) {
       return law_.stored_energy(x);
     } else {
-      const auto at_rest = [this](double s) { return law_.force(s, 0.0); };
-      double sum = 0.0, from = 0.0;
-      const std::span<const double> all = kinks();
-      const auto pass = [&](double kink) {
-        sum += gauss_integral(at_rest, from, kink);
-        from = kink;
-      };
-      for (std::size_t i = 0; x > 0.0 && i < all.size(); ++i)
-        if (all[i] > 0.0 && all[i] < x) pass(all[i]);
-      for (std::size_t i = all.size(); x < 0.0 && i-- > 0;)
-        if (all[i] < 0.0 && all[i] > x) pass(all[i]);
-      return sum + gauss_integral(at_rest, from, x);
+      return energy_of([this](double at) { return law_.force(at, 0.0); }, x, kinks());
     }
   }
 
