@@ -10,8 +10,9 @@
 ///   pieces() const: a vector or span of LawPiece
 ///     Everything else follows from them (PiecewiseLaw).
 ///   ScalarResponse operator()(const ScalarInput&) const
-///     The law gives slopes, energy and power itself; it may follow the time. It may state pieces too, for
-///     the methods that use them: check_element() compares them with the call.
+///     The law gives slopes, energy and power itself. If its stored energy follows the time too, it states
+///     `static constexpr bool varies = true`, so that the work of what moves the law is counted as given to the
+///     train. It may state pieces too, for the methods that use them: check_element() compares them with the call.
 ///
 /// Optional members are used where the law has them: kinks(), gap(), closed_stiffness(), closed_damping().
 #include <drev/core/law/dual.hpp>
@@ -79,6 +80,12 @@ class LawForce final : public ScalarForce {
       return law_.gap();
     else
       return pieces_.gap();
+  }
+  bool varies() const override {
+    if constexpr (requires { L::varies; })
+      return L::varies;
+    else
+      return false;
   }
   std::span<const LawPiece> pieces() const override { return pieces_.pieces(); }
 
