@@ -2,7 +2,7 @@
 
 #include <drev/core/assembler.hpp>
 #include <drev/core/error.hpp>
-#include <drev/core/law/quadrature.hpp>
+#include <drev/core/law/law_force.hpp>
 #include <drev/core/units.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/method.hpp>

@@ -1,7 +1,7 @@
 #include "solvers/periodic/floquet.hpp"
 
 #include <drev/core/assembler.hpp>
-#include <drev/core/law/quadrature.hpp>
+#include <drev/core/law/law_force.hpp>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include <drev/core/error.hpp>
 #include <drev/core/law/friction.hpp>
-#include <drev/core/law/quadrature.hpp>
+#include <drev/core/law/law_force.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 

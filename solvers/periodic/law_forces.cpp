@@ -1,5 +1,5 @@
 // Forces and slopes of the laws over a cycle, which LawBalance integrates.
-#include <drev/core/law/quadrature.hpp>
+#include <drev/core/law/law_force.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 

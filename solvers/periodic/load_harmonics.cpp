@@ -1,6 +1,6 @@
 #include "solvers/periodic/load_harmonics.hpp"
 
-#include <drev/core/law/quadrature.hpp>
+#include <drev/core/law/law_force.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
 

@@ -2,7 +2,7 @@
 
 #include <drev/core/law/harmonic_load.hpp>
 #include <drev/core/law/knotted_load.hpp>
-#include <drev/core/law/quadrature.hpp>
+#include <drev/core/law/law_force.hpp>
 #include <drev/core/law/speed_scaled_load.hpp>
 #include <drev/core/load.hpp>
 #include <drev/core/units.hpp>
