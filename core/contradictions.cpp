@@ -244,10 +244,26 @@ void add_part(const Eigen::MatrixXd& part, const std::vector<int>& nodes, Eigen:
       sum(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)]) += part(i, j);
 }
 
+/// The stored energy of a law that does not say that it varies, at two times and the same deflection, just beyond its
+/// gap: its energy balance would be off in every run.
+std::optional<Contradiction> unsaid_time(const ScalarForce& law) {
+  if (law.varies()) return std::nullopt;
+  constexpr double kBeyond = 1e-3, kLater = 1e-3;  // rad or m; s
+  const std::optional<Gap> gap = law.gap();
+  ScalarInput in{.x = gap && std::isfinite(gap->high) ? gap->high + kBeyond : kBeyond};
+  const double now = law.evaluate(in).stored_energy;
+  in.t = kLater;
+  const double later = law.evaluate(in).stored_energy;
+  if (now == later || std::isnan(now) || std::isnan(later)) return std::nullopt;
+  return Contradiction{"varies", "not stated, but the stored energy is " + to_text(now) +
+                                     " J at t = 0 s and " + to_text(later) + " J at t = " + to_text(kLater) +
+                                     " s" + where(in) + "; a law that follows the time must state it"};
+}
+
 }  // namespace
 
 std::optional<Contradiction> first_contradiction(const ScalarForce& law) {
-  if (law.pieces().empty()) return std::nullopt;
+  if (law.pieces().empty()) return unsaid_time(law);
   const std::vector<LawPiece> pieces = pieces_at(law, 0.0);
   std::optional<Contradiction> found = wrong_next(pieces);
   constexpr double x_part[] = {0.4}, rate_part[] = {0.8};

@@ -56,6 +56,16 @@ struct DeadZone {
 
 std::string report(DeadZone law) { return check_element(LawElement<DeadZone>(std::move(law)), 2).text(); }
 
+/// y = k (1 + 0.3 sin(50 t)) x.
+template <bool stated>
+struct Pulsating {
+  static constexpr bool varies = stated;
+  ScalarResponse operator()(const ScalarInput& in) const {
+    const double k = 1e3 * (1.0 + 0.3 * std::sin(50.0 * in.t));
+    return {.y = k * in.x, .dy_dx = k, .stored_energy = 0.5 * k * in.x * in.x};
+  }
+};
+
 template <class Law>
 std::string refusal(Law law) {
   Model m("contradictory");
@@ -197,6 +207,14 @@ TEST_CASE("A gap that contradicts the call of a law without pieces is found") {
   CHECK(with(0.5) == "");
   CHECK(contains(with(0.6), "gap: the call gives y = "));
   CHECK(contains(with(0.4), "gap: the call gives y = 0 beyond it"));
+}
+
+TEST_CASE("A law whose energy follows the time must say so") {
+  const std::string text = refusal(Pulsating<false>());
+  CHECK(contains(text, "law 0, varies = not stated, but the stored energy is 0.0005 J at t = 0 s and"));
+  CHECK(contains(text, "at t = 0.001 s at x = 0.001"));
+  CHECK(refusal(Pulsating<true>()) == "");
+  CHECK(check_element(LawElement<Pulsating<true>>({}), 2).text() == "");
 }
 
 TEST_CASE("A load's table is its stretch, and contradictions with the call are refused") {

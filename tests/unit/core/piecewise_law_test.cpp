@@ -3,6 +3,7 @@
 #include <drev/core/law_element.hpp>
 #include <drev/core/verify.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -48,6 +49,30 @@ struct Stop {
   }
   std::span<const double> kinks() const { return {&edge, 1}; }
   double closed_stiffness() const { return 7.0; }
+};
+
+/// y = k a tanh(x/a): it bends within a small part of what a run turns it.
+struct Saturating {
+  double k, a;
+  template <class T>
+  T force(const T& x, const T&) const {
+    using std::tanh;
+    return k * a * tanh(x / a);
+  }
+  double energy(double x) const {  // log(cosh(u)) without cancellation and overflow
+    const double u = std::abs(x / a), sinh = std::sinh(std::min(u, 1.0));
+    const double of_u =
+        u < 1.0 ? 0.5 * std::log1p(sinh * sinh) : u - std::log(2.0) + std::log1p(std::exp(-2.0 * u));
+    return k * a * a * of_u;
+  }
+};
+
+/// A friction that gives way at 1, whose jump is not stated.
+struct Jump {
+  template <class T>
+  T force(const T& x, const T&) const {
+    return x < 0.3 ? 2.0 * x : T(-1.0);
+  }
 };
 
 }  // namespace
@@ -137,6 +162,29 @@ TEST_CASE("A law as one formula over any scalar: slopes, energy and power follow
   // Beyond a kink the energy is that of the force beyond it.
   CHECK(check_element(LawElement<Stop>({0.02}), 2).text() == "");
   CHECK(LawForce<Stop>({0.02}).evaluate({.x = 0.52}).stored_energy == Approx(0.5 * 7.0 * 0.25));
+}
+
+TEST_CASE("The energy of a law that states its force alone is its integral to rounding") {
+  for (const double a : {1.0, 0.02, 0.002, 1e-4, 1e-6})
+    for (const double x : {-0.5, -1e-3, 0.5, 0.01}) {
+      const Saturating law{1e3, a};
+      CHECK(LawForce<Saturating>(law).evaluate({.x = x}).stored_energy ==
+            Approx(law.energy(x)).epsilon(1e-12));
+    }
+  const double beyond = LawForce<Jump>({}).evaluate({.x = 0.5}).stored_energy;
+  CHECK(beyond == Approx(0.09 - 0.2).epsilon(1e-12));
+  int calls = 0;
+  const auto counted = [&calls](double x) {
+    ++calls;
+    return x * x * x * (7.0 - x * x);
+  };
+  CHECK(energy_of(counted, 2.0, {}) == Approx(7.0 * 4.0 - 64.0 / 6.0).epsilon(1e-14));
+  CHECK(calls == 16);
+  // What is rough everywhere ends, too, and so does what is no number.
+  const auto rough = [&calls](double x) { return ++calls, std::sin(1e9 * x); };
+  CHECK(std::abs(energy_of(rough, 1.0, {})) <= 1.0);
+  CHECK(calls < 100000);
+  CHECK(std::isnan(energy_of([](double) { return std::nan(""); }, 1.0, {})));
 }
 
 TEST_CASE("Dual numbers: each function's slope is that of differences") {
