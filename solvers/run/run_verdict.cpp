@@ -58,20 +58,24 @@ void end_interrupted(RunSummary& summary, const std::string& system, double t) {
 std::string what_is_not_finite(const Assembler& assembler, const EvaluatedState& from,
                                const EvaluatedState& to) {
   const System& system = assembler.system();
-  EvaluatedState before;
-  before.state = from.state;
   const auto name_of = [&](ElementId element) {
     return system.element_instances()[idx(index(element))].name;
   };
-  for (const LoadTerm& load : system.loads()) {
-    const LoadResponse r = assembler.load(load, before.state.z, before.state.v);
-    if (!std::isfinite(r.torque)) return "the load of " + name_of(load.element);
-    if (!std::isfinite(r.dtorque_dangle) || !std::isfinite(r.dtorque_dspeed))
-      return "the slope of the load of " + name_of(load.element);
+  EvaluatedState point;
+  // Where the step began, then where it led to: its own end is no number any more.
+  for (const double ahead : {0.0, assembler.time() - from.state.t}) {
+    point.state = from.state;
+    point.state.z += ahead * from.state.v;
+    for (const LoadTerm& load : system.loads()) {
+      const LoadResponse r = assembler.load(load, point.state.z, point.state.v);
+      if (!std::isfinite(r.torque)) return "the load of " + name_of(load.element);
+      if (!std::isfinite(r.dtorque_dangle) || !std::isfinite(r.dtorque_dspeed))
+        return "the slope of the load of " + name_of(load.element);
+    }
+    evaluate_laws(assembler, point);
+    for (std::size_t j = 0; j < point.responses.size(); ++j)
+      if (!std::isfinite(point.responses[j].y)) return "the force of " + name_of(system.scalars()[j].element);
   }
-  evaluate_laws(assembler, before);
-  for (std::size_t j = 0; j < before.responses.size(); ++j)
-    if (!std::isfinite(before.responses[j].y)) return "the force of " + name_of(system.scalars()[j].element);
   for (int k = 0; k < system.size(); ++k)
     if (!std::isfinite(to.state.z[k]) || !std::isfinite(to.state.v[k]))
       return "the motion of " + system.unknown_name(k);

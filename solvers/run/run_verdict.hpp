@@ -22,8 +22,9 @@ void end_run(RunSummary& summary, const std::string& system, double t, RunStatus
 /// Ends a run that its caller stopped.
 void end_interrupted(RunSummary& summary, const std::string& system, double t);
 
-/// What is not finite in a step from -> to: a load, its slope or a law's force at the motion before the step and the
-/// assembler's time, else the motion of an unknown at the step's end, each by its name; empty: none of these.
+/// What is not finite in a step from -> to: a load, its slope or a law's force at the assembler's time and the motion
+/// before the step, or where that leads by then (z + v dt), else the motion of an unknown at the step's end, each by its
+/// name; empty: none of these.
 std::string what_is_not_finite(const Assembler& assembler, const EvaluatedState& from,
                                const EvaluatedState& to);
 /// Ends a run at from's time with the first of these, or with the energy, as not finite.

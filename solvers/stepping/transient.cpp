@@ -28,6 +28,7 @@ constexpr double kChosenStep = 0.1;    // first step times the fastest eigenvalu
 constexpr double kLargestStep = 0.05;  // largest step over the duration of the run
 constexpr double kRoundedStep = 1e7;  // longest step times it: near 1e8 rounding leaves nothing of M beside K
 constexpr double kLeastStep = 1e-9;   // step over the duration that is not rejected for its error
+constexpr double kNoStep = 4e-15;     // step over the time of the run with which it hardly goes on any more
 constexpr double kStanding = 1e-3;    // part of a step within which changes are counted together
 constexpr double kCoarseSteps = 200;  // steps of the run that finds the scales
 constexpr double kLeastShare = 1e-3;  // share of the energy error that any step may have
@@ -222,7 +223,9 @@ class Run final : public StepMotion {
     summary_.iterations += made.newton.iterations;
     if (made.newton.status != NewtonStatus::converged) {
       equation_.start_from(*now_);
-      if (failures_ == options_.max_halvings) {
+      // Steps towards a time or motion behind which a force is not finite are made and fail by turns, ever shorter.
+      const double latest = std::max(std::abs(options_.t_start), std::abs(options_.t_end));
+      if (failures_ == options_.max_halvings || h <= kNoStep * latest) {
         failures_ = 0;
         halved_step().last_resort(made.newton.status, h, t_new, t_evaluate);
         return;
@@ -271,9 +274,11 @@ class Run final : public StepMotion {
     }
     ++summary_.rejected;
     equation_.start_from(*now_);
-    if (h <= kLeastStep * duration() && !std::isfinite(error))
+    if (h <= kLeastStep * duration() && !std::isfinite(error)) {
+      const std::string what = what_is_not_finite(equation_.assembler(), *now_, *next_);
       end_run(summary_, system_.name(), now_->state.t, RunStatus::not_finite,
-              "the estimated error is not finite");
+              (what.empty() ? "the estimated error" : what) + " is not finite");
+    }
     return false;
   }
 
