@@ -1,8 +1,8 @@
 #pragma once
-/// What a law, a load or an element says of itself twice must agree: a law's pieces, kinks, gap, closed slopes, the
-/// formula of its scale, and that its energy does not follow the time, with its call; a load's table, stretch, harmonics, knots with their curves, curves scaled
-/// by the speed, and frequencies with its call; an element's parts with its description. Each method takes what
-/// serves it best; a contradiction would give other results by another method.
+/// What a law, a load or an element says of itself twice must agree: a law's pieces, kinks, gap, closed slopes, the formula
+/// of its scale, and that its energy does not follow the time, with its call; a load's table, stretch, harmonics, knots with
+/// their curves, curves scaled by the speed, and frequencies with its call; an element's parts with its description. Each
+/// method takes what serves it best; a contradiction would give other results by another method.
 #include <drev/core/load.hpp>
 #include <drev/core/scalar_force.hpp>
 
