@@ -2,7 +2,9 @@
 #include "solvers/run/for_all.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "tests/catch.hpp"
@@ -36,6 +38,8 @@ TEST_CASE("for_all: an exception ends the tasks and is thrown") {
     const auto task = [&](std::size_t i, std::size_t) {
       ++begun;
       if (i == 2) throw std::runtime_error("task 2");
+      // On a busy machine the others would all be done before that one goes on.
+      if (threads > 1) std::this_thread::sleep_for(std::chrono::microseconds(1));
     };
     CHECK_THROWS_WITH(for_all(100000, threads, task), "task 2");
     CHECK(begun < 100000);
