@@ -12,6 +12,7 @@ constexpr double kLeastFactor = 0.2, kLargestFactor = 4.0;
 constexpr double kFailureFactor = 0.25;
 constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 constexpr double kRateRounding = std::numeric_limits<double>::epsilon();  // rounding of v_1 - v_0
+constexpr double kTooShort = 0.05;                                        // E with which the step grows
 constexpr double kLeastError = 1e-6;                                      // as far as the controller looks
 }  // namespace
 
@@ -56,9 +57,11 @@ double StepControl::error(const State& end, const Vector& e_z, const Vector& e_v
   const int* outer = system_.pattern().outerIndexPtr();
   const int* inner = system_.pattern().innerIndexPtr();
   const double share = h * options_.tolerance / options_.duration;
-  double worst = 0.0;
+  double worst = 0.0, beyond_rounding = 0.0;
   const auto take = [&](double e, double rounding, double scale) {
-    if (scale > 0.0) worst = std::max(worst, (e - rounding) / scale);
+    if (!(scale > 0.0)) return;
+    worst = std::max(worst, e / scale);
+    beyond_rounding = std::max(beyond_rounding, (e - rounding) / scale);
   };
   for (Eigen::Index i = 0; i < e_z.size(); ++i) {
     if (!std::isfinite(e_z[i]) || !std::isfinite(e_v[i])) return std::numeric_limits<double>::infinity();
@@ -72,7 +75,7 @@ double StepControl::error(const State& end, const Vector& e_z, const Vector& e_v
     take(std::abs(e_z[i]), kRounding * std::abs(end.z[i]), s.z[kind]);
     take(std::abs(e_v[i]), kRateRounding * std::abs(end.v[i]) + kRounding * h * force / inertia, s.v[kind]);
   }
-  return worst / share;
+  return worst > share && beyond_rounding <= share ? kTooShort : worst / share;
 }
 
 void StepControl::accepted(double h, double error, bool as_planned) {
