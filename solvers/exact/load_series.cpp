@@ -24,7 +24,7 @@ constexpr double kNodeRest = 0.1;
 constexpr double kSmoothEnds = 2.0;
 // Error of the step's end behind a kink, relative to the rest times its contraction factor: the rest swings about zero there.
 constexpr double kKinkRest = 1e-5;
-// Rounding of the projection's coefficients, relative to the force.
+// Rounding of the projection's coefficients, relative to the largest force so far.
 constexpr double kForceRounding = 4e-15;
 // What a projection leaves is rounding where it is below kMostRounding of the force and a step of at most kMuchShorter the length
 // leaves at least kSameRest of it: of a smooth force it would leave a 2^-5 or less, and of a jump of that size all but nothing counts.
@@ -164,7 +164,7 @@ LoadSeries::Rest LoadSeries::rest_of_force(int row, double off_at_ends) const {
   const double falls = last > 0.0 ? std::min(1.0, last / before) : 0.0, falls_2 = falls * falls;
   Rest rest{.smooth = last * falls,
             .rough = std::max(last * falls_2 * falls_2, off_at_ends - kSmoothEnds * last)};
-  const double rounding = std::max(rounding_[idx(row)], kForceRounding * size_of_force(row));
+  const double rounding = rounding_[idx(row)];
   if (rest.smooth <= rounding) rest.smooth = 0.0;
   if (rest.rough <= rounding) rest.rough = 0.0;
   return rest;
@@ -244,8 +244,8 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
       if (held && largest > 0.0 && !(by <= force / largest)) return force / largest;
       return std::isfinite(by) ? by : 0.0;
     };
-    if (held && largest > 0.0)
-      pass.torque = std::max({pass.torque, rest.smooth / largest, rest.rough / largest});
+    const double lacks = std::max(rest.smooth, rest.rough);
+    if (held && lacks > kForceRounding * largest) pass.torque = std::max(pass.torque, lacks / largest);
     const double smooth = measured(rest.smooth);
     pass.inside = std::max(pass.inside, kPathRest * smooth);
     pass.residual = std::max(pass.residual, at_end * smooth);
