@@ -51,7 +51,8 @@ class StepExpansion {
   struct Attempt {
     double h = 0.0;
     bool again = false;
-    double longer = StepLength::kUnlimited;  ///< what is projected bears a next step of so many times the length
+    double longer =
+        StepLength::kUnlimited;  ///< what is projected bears a next step of so many times the length
   };
   /// Expands from `from`, where known was located, over h [s].
   Attempt attempt(const EvaluatedState& from, const LawSeries& laws, double h, const Limits& limits);

@@ -83,7 +83,9 @@ TEST_CASE("A longer step that is given up is tried again, the later the sooner i
   CHECK(steps_held_back(step, end) == first);
 }
 
-TEST_CASE("A step that was shortened grows threefold at a time, or as what is projected bears; terms that overflow leave a sixteenth") {
+TEST_CASE(
+    "A step that was shortened grows threefold at a time, or as what is projected bears; terms that overflow "
+    "leave a sixteenth") {
   StepLength step;
   step.start(1.0, 1e6, 1e-6);
   CHECK(step.attempted(4.0, 1.0) == 1.0);
