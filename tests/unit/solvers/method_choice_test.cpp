@@ -187,12 +187,9 @@ TEST_CASE("A method that is affordable, or the cheapest that is right, stays") {
   CHECK(soon.other_ns == 0.0);
   // Long, but its steps are those of the motion.
   const System soft = driven_through(1e4);
-  const MethodChoice cheap = choose_method(soft, 20.0, 1e-4);
+  const MethodChoice cheap = choose_method(soft, 100.0, 1e-4);
   REQUIRE(cheap.method.exact());
-  const MethodTrial trial = try_methods(soft, cheap, 20.0);
-  INFO(trial.choice.reason << ": " << trial.chosen_ns << " beside " << trial.other_ns);
-  CHECK(trial.choice.method.exact());
-  CHECK(trial.other_ns == 0.0);
+  CHECK(try_methods(soft, cheap, 100.0).choice.method.exact());
   // Constant steps are no one's choice but where nothing else is fit for the system.
   MethodChoice constant = choose_method(stiff, 20.0, 1e-4);
   constant.method = Method{};
