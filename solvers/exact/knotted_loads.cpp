@@ -146,7 +146,6 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
                                    LegendreProjection& kinks) {
   const GaussRule& rule = gauss_rule();
   l.kinked = l.unfinished = false;
-  l.monotone = true;
   l.off_at_ends = 0.0;
   l.strongest = 1.0;
   Samples at;
@@ -183,10 +182,8 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
     knots = rises ? end > ahead : end < ahead;
   }
   if (knots && monotone) return pass_knots(l, series, end, kinks);
-  if (knots) {  // Its angle may turn back in the step: each node on its own side of the knots.
-    l.monotone = false;
-    return differ_called(l, series, forces);
-  }
+  // Its angle may turn back in the step: each node on its own side of the knots.
+  if (knots) return differ_called(l, series, forces);
   sample(l, rule.s.data(), at);
   double slope = 0.0, speed_slope = 0.0;
   for (std::size_t q = 0; q < kNodes; ++q) {

@@ -27,7 +27,7 @@ constexpr double kKinkRest = 1e-5;
 // Rounding of the projection's coefficients, relative to the largest force so far.
 constexpr double kForceRounding = 4e-15;
 // What a projection leaves is rounding where it is below kMostRounding of the force and a step of at most kMuchShorter the length
-// leaves at least kSameRest of it: of a smooth force it would leave a 2^-5 or less, and of a jump of that size all but nothing counts.
+// leaves at least kSameRest of it. A smooth force would leave far less, and a jump below kMostRounding moves next to nothing.
 constexpr double kMostRounding = 1e-7, kMuchShorter = 0.3, kSameRest = 0.5;
 constexpr double kRoundingVaries = 16.0;  // from step to step, at most
 

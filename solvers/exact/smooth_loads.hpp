@@ -72,9 +72,9 @@ class SmoothLoads {
  private:
   struct Place : TangentLoad, KnottedPlace {
     using TangentLoad::TangentLoad;
-    bool kinked = false, unfinished = false, monotone = true;  // what this pass found of the load
-    double strongest = 1.0;                                    // of the knots passed
-    double off_at_ends = 0.0;
+    bool kinked = false, unfinished = false;  // what this pass found of the load
+    double strongest = 1.0;                   // of the knots passed
+    double off_at_ends = 0.0;                 // GaussRule::off_at_ends() [N m]
   };
   struct Samples;
   double beyond_tangent(const Place& load, const Samples& at, std::size_t q) const;
