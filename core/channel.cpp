@@ -68,8 +68,7 @@ class ChannelFinder {
       const bool turns = rotational(a);
       if (turns != rotational(b) || turns != (kind == "twist_rad")) continue;
       if (++readings > 1) continue;
-      channel.name_ = name;
-      channel.unit_ = turns ? "rad" : "m";
+      channel = named(name, turns ? "rad" : "m");
       channel.kind_ = Channel::Kind::difference;
       channel.index_ = a;
       channel.second_ = b;
@@ -99,9 +98,7 @@ class ChannelFinder {
     const auto add_one = [&](bool there, const char* what, const char* unit, Channel::Kind kind,
                              double (ElementEnergy::*of)(const Assembler&, const State&) const) {
       if (!there) return;
-      Channel c;
-      c.name_ = system_.element_instances()[idx(element)].name + what;
-      c.unit_ = unit;
+      Channel c = named(system_.element_instances()[idx(element)].name + what, unit);
       c.kind_ = kind;
       c.energy_ = energy;
       c.of_energy_ = of;
@@ -123,12 +120,17 @@ class ChannelFinder {
   }
 
  private:
-  void add(std::string name, std::string unit, Channel::Kind kind, int index,
-           bool along_line_of_action = false, const OutputTerm* output = nullptr) {
-    if (wanted_ && !wanted_->contains(name)) return;
+  Channel named(std::string name, std::string unit) const {
     Channel c;
     c.name_ = std::move(name);
     c.unit_ = std::move(unit);
+    c.layout_ = system_.layout();
+    return c;
+  }
+  void add(std::string name, std::string unit, Channel::Kind kind, int index,
+           bool along_line_of_action = false, const OutputTerm* output = nullptr) {
+    if (wanted_ && !wanted_->contains(name)) return;
+    Channel c = named(std::move(name), std::move(unit));
     c.kind_ = kind;
     c.index_ = index;
     c.along_line_of_action_ = along_line_of_action;
@@ -366,17 +368,6 @@ std::optional<double> Channel::force_rate(const Assembler& assembler, const Stat
   return y;
 }
 
-bool Channel::value_needs_acceleration() const {
-  return inertial_ || kind_ == Kind::acceleration || kind_ == Kind::reaction || kind_ == Kind::ideal_ratio;
-}
-
-double Channel::over_unknowns(const State& state) const {
-  double y = 0.0;
-  for (const Entry& e : z_) y += e.coeff * state.z[e.index];
-  for (const Entry& e : v_) y += e.coeff * state.v[e.index];
-  return y;
-}
-
 double Channel::evaluate(const Assembler& assembler, const State& state) const {
   if (direct_) return over_unknowns(state);
   const System& system = assembler.system();
@@ -425,6 +416,12 @@ double Channel::evaluate(const Assembler& assembler, const State& state) const {
 
 double Channel::integrand(const Assembler& assembler, const State& state) const {
   return ((*energy_).*of_energy_)(assembler, state);
+}
+
+bool Channel::is_of(const System& system) const { return layout_ == system.layout(); }
+
+bool are_of(const System& system, const std::vector<Channel>& channels) {
+  return std::all_of(channels.begin(), channels.end(), [&](const Channel& c) { return c.is_of(system); });
 }
 
 std::vector<Channel> all_channels(const System& system) { return ChannelFinder(system).channels; }

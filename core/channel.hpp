@@ -38,6 +38,8 @@ class Channel {
  public:
   const std::string& name() const { return name_; }
   const std::string& unit() const { return unit_; }
+  /// Whether it was found in this system or one that it is a copy of: in others its places mean something else.
+  bool is_of(const System& system) const;
   /// Value at a state; the assembler must stand at the state's time. Throws SolverError where over_run().
   double evaluate(const Assembler& assembler, const State& state) const;
   /// Its rate of change at a state: of motions, deflections, forces of laws that follow x and x' alone, or x and the angle of
@@ -57,7 +59,9 @@ class Channel {
   bool of_energy() const { return energy_ != nullptr; }
 
   /// Whether evaluate() reads the state's accelerations, or rate() does.
-  bool value_needs_acceleration() const;
+  bool value_needs_acceleration() const {
+    return inertial_ || kind_ == Kind::acceleration || kind_ == Kind::reaction || kind_ == Kind::ideal_ratio;
+  }
   /// Whether the value jumps or kinks where a load does.
   bool follows_loads() const {
     return kind_ == Kind::load || kind_ == Kind::friction || driven_ || value_needs_acceleration();
@@ -78,7 +82,12 @@ class Channel {
 
  private:
   friend class ChannelFinder;
-  double over_unknowns(const State& state) const;
+  double over_unknowns(const State& state) const {
+    double y = 0.0;
+    for (const Entry& e : z_) y += e.coeff * state.z[e.index];
+    for (const Entry& e : v_) y += e.coeff * state.v[e.index];
+    return y;
+  }
   enum class Kind {
     value,
     rate,
@@ -96,6 +105,7 @@ class Channel {
     integral
   };
   std::string name_, unit_;
+  std::shared_ptr<const void> layout_;  ///< System::layout()
   Kind kind_ = Kind::value;
   int index_ = 0, second_ = 0;
   bool along_line_of_action_ = false;
@@ -112,6 +122,8 @@ class Channel {
   bool inertial_ = false;  ///< of a load, or its energy: inertias that follow an angle may be among it
 };
 
+/// Whether all of them are of it.
+bool are_of(const System& system, const std::vector<Channel>& channels);
 /// Every channel of a system, in the order of its nodes and elements (differences and energies left out).
 std::vector<Channel> all_channels(const System& system);
 /// Those of energy and power, in the order of the elements.

@@ -154,6 +154,8 @@ class System {
   int node_count() const { return static_cast<int>(node_names_->size()); }
   int prescribed_count() const { return static_cast<int>(prescribed_.size()); }
   int history_size() const { return history_size_; }
+  /// What its copies share and no other system has: by it channels and observers know whose they are.
+  std::shared_ptr<const void> layout() const { return pattern_; }
   const std::vector<std::string>& node_names() const { return *node_names_; }
   NodeKind node_kind(int node) const { return node_kinds_[idx(node)]; }
   const NodeMap& node_map(int node) const { return node_map_[idx(node)]; }

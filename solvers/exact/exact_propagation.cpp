@@ -477,7 +477,7 @@ class ExactRun final : public StepMotion {
 RunSummary propagate(const System& system, const ExactOptions& options, State& state,
                      const std::vector<Observer*>& observers) {
   check_propagation(system, options, state);
-  check_observers(observers, system.name() + "/exact");
+  check_observers(observers, system.name() + "/exact", &system);
   ExactRun run(system, options, state, observers);
   try {
     RunSummary summary = run.run();

@@ -61,6 +61,7 @@ class OrderTracking final : public Observer {
   /// unknown: throws ModelError.
   OrderTracking(const System& system, const std::vector<std::string>& channels, std::vector<double> orders,
                 double turns, bool own_times, const std::string& shaft = {});
+  bool fits(const System& system) const override { return are_of(system, channels_); }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   double next_stop(double t) const override;

@@ -14,6 +14,11 @@ AfterTime::AfterTime(double begin, std::vector<Observer*> observers)
   check_observers(observers_, "observers from a time on");
 }
 
+bool AfterTime::fits(const System& system) const {
+  return std::all_of(observers_.begin(), observers_.end(),
+                     [&](const Observer* o) { return o->fits(system); });
+}
+
 void AfterTime::start(const Assembler& assembler, const EvaluatedState& point) {
   started_ = point.state.t >= begin_;
   if (!started_) return;

@@ -18,6 +18,7 @@ class AfterTime final : public Observer {
   void look_through(StepMotion& motion) override {
     for (Observer* o : observers_) o->look_through(motion);
   }
+  bool fits(const System& system) const override;
   bool watches_loads() const override;
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;

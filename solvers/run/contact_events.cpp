@@ -48,6 +48,8 @@ void ContactEvents::note_side(std::size_t law, int side, double t, double rate) 
   }
 }
 
+bool ContactEvents::fits(const System& system) const { return system.layout() == system_.layout(); }
+
 void ContactEvents::start(const Assembler& /*assembler*/, const EvaluatedState& point) {
   states_.clear();
   for (const FrictionTerm& term : system_.frictions())

@@ -73,7 +73,8 @@ static std::vector<Channel> gap_forces(const System& system) {
 }
 
 ContactStatistics::ContactStatistics(const System& system, bool inside_steps)
-    : inside_steps_(inside_steps),
+    : layout_(system.layout()),
+      inside_steps_(inside_steps),
       forces_(inside_steps ? std::make_unique<Peaks>(gap_forces(system)) : nullptr) {
   const std::vector<double> masses = equivalent_masses(system);
   for (std::size_t j = 0; j < system.scalars().size(); ++j) {
@@ -100,6 +101,8 @@ void ContactStatistics::look_through(StepMotion& motion) {
   motion_ = &motion;
   if (forces_) forces_->look_through(motion);
 }
+
+bool ContactStatistics::fits(const System& system) const { return system.layout() == layout_; }
 
 void ContactStatistics::start(const Assembler& assembler, const EvaluatedState& point) {
   if (forces_) forces_->start(assembler, point);

@@ -70,6 +70,7 @@ void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, 
 /// there by that of x'^2 over x, and a flank touched and left inside one step is not seen.
 class ContactStatistics final : public Observer {
  public:
+  bool fits(const System& system) const override;
   bool needs_acceleration() const override;
   bool looks_inside(const EvaluatedState& from, const EvaluatedState& to,
                     const double* beyond_cubic) override;
@@ -86,6 +87,7 @@ class ContactStatistics final : public Observer {
   bool may_rise_inside(std::size_t i, const EvaluatedState& from, const EvaluatedState& to);
   void note_forces(std::size_t i, const Assembler& assembler, const EvaluatedState& from,
                    const EvaluatedState& to);
+  std::shared_ptr<const void> layout_;  // System::layout()
   bool inside_steps_ = true;
   StepMotion* motion_ = nullptr;
   std::unique_ptr<Peaks> forces_;  // of each law; null: not looked for inside steps
@@ -120,6 +122,7 @@ class ContactEvents final : public Observer {
   /// sink: takes each event as the run comes to it; without one they are kept, see all(). Those of one time come in the
   /// order in which the edges are passed, those of different laws in that of System::scalars() within a step.
   explicit ContactEvents(const System& system, std::function<void(const ContactEvent&)> sink = {});
+  bool fits(const System& system) const override;
   void look_through(StepMotion& motion) override { motion_ = &motion; }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;

@@ -30,6 +30,9 @@ class ElementTotals final : public Observer {
   };
 
   explicit ElementTotals(const System& system);
+  bool fits(const System& system) const override {
+    return are_of(system, values_.channels()) && stored_.fits(system);
+  }
   void look_through(StepMotion& motion) override;
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;

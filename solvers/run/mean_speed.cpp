@@ -19,6 +19,8 @@ MeanSpeed::MeanSpeed(const System& system, double begin, double end)
   }
 }
 
+bool MeanSpeed::fits(const System& system) const { return system.layout() == system_.layout(); }
+
 void MeanSpeed::start(const Assembler& assembler, const EvaluatedState& point) {
   angle_ = assembler.nominal().value;
   angle_sum_ = weights_ = 0.0;

@@ -24,6 +24,7 @@ class MeanSpeed final : public Observer {
  public:
   /// Over begin to end [s], of which the run shows this a part.
   MeanSpeed(const System& system, double begin, double end);
+  bool fits(const System& system) const override;
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;
   bool needs_acceleration() const override { return false; }

@@ -8,6 +8,7 @@
 namespace drev {
 
 class Assembler;
+class System;
 struct Entry;
 struct EvaluatedState;
 
@@ -49,6 +50,8 @@ class StepMotion {
 class Observer {
  public:
   virtual ~Observer() = default;
+  /// Whether it may watch a run of this system: what is made of one system's channels or laws fits no other.
+  virtual bool fits(const System& /*system*/) const { return true; }
   /// Once, before start(): where to look inside steps. It may be asked in step() alone. An observer that holds
   /// others hands it on.
   virtual void look_through(StepMotion& /*motion*/) {}

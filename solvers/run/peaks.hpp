@@ -22,6 +22,7 @@ class Peaks final : public Observer {
   /// for constant steps that are short beside the accuracy, and to compare with what samples such ends.
   explicit Peaks(std::vector<Channel> channels, bool inside_steps = true);
 
+  bool fits(const System& system) const override { return are_of(system, channels_); }
   void look_through(StepMotion& motion) override { motion_ = &motion; }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   bool looks_inside(const EvaluatedState& from, const EvaluatedState& to,

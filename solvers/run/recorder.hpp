@@ -23,6 +23,7 @@ class Recorder final : public Observer {
     sink_ = std::move(sink);
   }
 
+  bool fits(const System& system) const override { return are_of(system, channels()); }
   void look_through(StepMotion& motion) override { values_.look_through(motion); }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;

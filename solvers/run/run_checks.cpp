@@ -10,12 +10,18 @@ void check_span(double t_start, double t_end, ParameterCheck& check) {
     check.fail("t_end", to_text(t_end), "s", "must be greater than t_start = " + to_text(t_start));
 }
 
-void check_observers(const std::vector<Observer*>& observers, const std::string& place) {
+void check_observers(const std::vector<Observer*>& observers, const std::string& place,
+                     const System* system) {
   std::vector<Finding> findings;
   ParameterCheck check(place, findings);
-  for (std::size_t i = 0; i < observers.size(); ++i)
+  for (std::size_t i = 0; i < observers.size(); ++i) {
+    const std::string name = "observers[" + std::to_string(i) + "]";
     if (observers[i] == nullptr)
-      check.fail("observers[" + std::to_string(i) + "]", "null", "", "must point to an observer");
+      check.fail(name, "null", "", "must point to an observer");
+    else if (system != nullptr && !observers[i]->fits(*system))
+      check.fail(name, "made for another system", "",
+                 "must be made for the system that runs, or one it is a copy of");
+  }
   if (!findings.empty()) throw ModelError(std::move(findings));
 }
 

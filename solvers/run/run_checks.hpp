@@ -14,7 +14,9 @@ class Observer;
 void check_state(const System& system, const State& state, ParameterCheck& check);
 /// Reports a run that has no beginning or no time: t_start finite, t_end finite and greater [s].
 void check_span(double t_start, double t_end, ParameterCheck& check);
-/// Throws ModelError for observers that are null, each with its place in the list.
-void check_observers(const std::vector<Observer*>& observers, const std::string& place);
+/// Throws ModelError for observers that are null or do not fit the system that is to run (where it is known), each with
+/// its place in the list.
+void check_observers(const std::vector<Observer*>& observers, const std::string& place,
+                     const System* system = nullptr);
 
 }  // namespace drev

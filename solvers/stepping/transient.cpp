@@ -396,7 +396,7 @@ void check_options(const System& system, const TransientOptions& o, const State&
 RunSummary simulate(const System& system, const TransientOptions& options, State& state,
                     const std::vector<Observer*>& observers) {
   check_options(system, options, state);
-  check_observers(observers, system.name() + "/transient");
+  check_observers(observers, system.name() + "/transient", &system);
   Run run(system, options, state, observers);
   try {
     RunSummary summary = run.run();

@@ -94,6 +94,11 @@ RainflowWatch::RainflowWatch(std::vector<RainflowChannel> channels) : last_(chan
     });
 }
 
+bool RainflowWatch::fits(const System& system) const {
+  return std::all_of(results_.begin(), results_.end(),
+                     [&](const Result& r) { return r.of.channel.is_of(system); });
+}
+
 void RainflowWatch::start(const Assembler& assembler, const EvaluatedState& point) {
   for (std::size_t c = 0; c < results_.size(); ++c) {
     last_[c] = results_[c].of.channel.evaluate(assembler, point.state);

@@ -80,6 +80,7 @@ class RainflowWatch final : public Observer {
   explicit RainflowWatch(std::vector<RainflowChannel> channels);
   RainflowWatch(const RainflowWatch&) = delete;
   RainflowWatch& operator=(const RainflowWatch&) = delete;
+  bool fits(const System& system) const override;
   void look_through(StepMotion& motion) override { motion_ = &motion; }
   void start(const Assembler& assembler, const EvaluatedState& point) override;
   void step(const Assembler& assembler, const EvaluatedState& from, const EvaluatedState& to) override;

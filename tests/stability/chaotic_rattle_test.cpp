@@ -101,9 +101,9 @@ TEST_CASE("Chaotic rattle: statistics by average acceleration with 50 steps a pe
 TEST_CASE("Chaotic rattle: a deviation of 1e-12 reaches 0.05 after some 35 periods") {
   // 31 to 41 periods were seen; ln(0.05/1e-12)/0.688 = 36. From 1e-6: 15.5.
   for (const auto& [deviation, low, high] : {std::tuple{1e-12, 28.0, 44.0}, {1e-6, 11.0, 21.0}}) {
-    Recorder a(rattle(), {"wheel.angle_rad"}, kTwoPi / 8), b = a;
     const double t_end = 150 * kTwoPi, start = 100 * kTwoPi;
     const System system = rattle();
+    Recorder a(system, {"wheel.angle_rad"}, kTwoPi / 8), b = a;
     State first = State::initial(system);
     propagate(system, {.tolerance = 1e-13, .t_end = start}, first);
     State second = first;
