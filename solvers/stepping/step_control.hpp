@@ -31,8 +31,8 @@ class StepControl {
   void look_at(const State& state) { scales_ = with(state, 1.0); }
   /// Length of the next step, with `remaining` to the next stop.
   double next(double remaining) const;
-  /// E of a step of length h that ends at a state, from the errors of deviations and rates. Where rounding
-  /// alone may have made it, one with which the step grows.
+  /// E of a step of length h that ends at a state, from the errors of deviations and rates. Where rounding alone may have made
+  /// it, one with which the step grows: no shorter step would lower it, and steps that are all rounding would stay so.
   double error(const State& end, const Vector& e_z, const Vector& e_v, double h) const;
   /// After an accepted step. as_planned: not cut short by a stop or contact.
   void accepted(double h, double error, bool as_planned);

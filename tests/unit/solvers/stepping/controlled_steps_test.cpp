@@ -5,6 +5,7 @@
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/ready_made.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
@@ -152,6 +153,52 @@ TEST_CASE("A tolerance whose share of a step is below rounding does not end the 
   INFO(run.brief_report());
   CHECK(run.status == RunStatus::interrupted);
   CHECK(state.v[0] == Approx(std::cos(kTwoPi * state.t)).epsilon(1e-11));
+}
+
+TEST_CASE("Controlled steps: rounding of a stiff spring on a light disc does not hold the steps short") {
+  // A torque of 1e-16 of the angle times 2e7 N m/rad turns 1e-6 kg m^2: at steps of 1e-9 s the estimate is rounding. To 1e-5
+  // the train is the one without the disc, its two springs in series.
+  const auto train = [](bool with_disc) {
+    Model m("light disc");
+    for (const auto& [node, inertia] : {std::pair("a", 0.5), {"b", 1e-6}, {"c", 0.3}, {"d", 2.0}}) {
+      if (!with_disc && *node == 'b') continue;
+      m.add_node(node);
+      m.add<Inertia>(std::string("J_") + node, {node}, {.inertia = inertia});
+    }
+    m.set_reference("a", constant_speed(50.0 * kPi));
+    if (with_disc) {
+      m.add<ShaftSpring>("s1", {"a", "b"}, {.stiffness = 2e7});
+      m.add<ShaftSpring>("s2", {"b", "c"}, {.stiffness = 3e4, .damping = 2.0});
+    } else {
+      m.add<ShaftSpring>("s", {"a", "c"}, {.stiffness = 1.0 / (1.0 / 2e7 + 1.0 / 3e4), .damping = 2.0});
+    }
+    m.add<ShaftSpring>("s3", {"c", "d"}, {.stiffness = 1e4, .damping = 3.0});
+    m.add<EngineOrderTorque>("engine", {"a"}, {.harmonics = {{2.0, 100.0}, {4.0, 40.0}}, .mean = 50.0});
+    m.add<TorqueFunction>("fan", {"d"},
+                          {.torque = [](const TorqueVariables& v) { return -0.0021 * v.speed * v.speed; }});
+    return m.build();
+  };
+  const System stiff = train(true), series = train(false);
+  State right = State::initial(series);
+  propagate(series, {.t_end = 0.5}, right);
+  for (const double tolerance : {1e-5, 1e-6}) {
+    State state = State::initial(stiff);
+    const RunSummary run = simulate(stiff,
+                                    {.scheme = step_scheme("sdirk4"),
+                                     .tolerance = tolerance,
+                                     .t_end = 0.5,
+                                     .progress = [asked = 0](double) mutable { return ++asked < 2000; }},
+                                    state);
+    INFO(run.brief_report());
+    CHECK(run.ok());
+    CHECK(std::abs(run.energy.relative_error()) < 1e-6);
+    for (const char* node : {"a", "c", "d"}) {
+      const NodeMap &in_stiff = stiff.node_map(stiff.node(node)),
+                    &in_series = series.node_map(series.node(node));
+      CHECK(state.z[in_stiff.unknown] == Approx(right.z[in_series.unknown]).epsilon(1e-4));
+      CHECK(state.v[in_stiff.unknown] == Approx(right.v[in_series.unknown]).epsilon(1e-4));
+    }
+  }
 }
 
 TEST_CASE("The scales of a run far longer than its periods are found in steps that keep the inertia") {
