@@ -19,9 +19,11 @@ namespace {
 
 constexpr int kCallEvery = 100;  // steps between calls of progress, of all methods
 constexpr int kFirstSteps = 1000, kOtherSteps = 4000;
-constexpr std::size_t kMostOfCalls = 5;      // times what a run is to have at least
+constexpr int kMostOfCalls = 5;        // times what a run is to have at least, or
+constexpr double kMostOfRun = 0.002;   // of what the chosen method would cost, where that is more; up to
+constexpr double kLongestTrial = 5e9;  // ns
 constexpr std::size_t kMostOfSamples = 400;  // calls
-constexpr double kSteady = 2.0;              // growth of the pace from one half to the next
+constexpr double kSteady = 1.2;              // growth of the pace from one half to the next
 constexpr double kStart = 1e-6;              // of the duration: steps from rest may be tiny until then
 constexpr int kSamples = 32;
 constexpr std::size_t kMostChannels = 64;
@@ -72,7 +74,8 @@ class Trial {
   MethodTrial run() {
     MethodTrial trial{.choice = chosen_};
     if (!(chosen_.method.tolerance > 0.0)) return trial;  // constant steps: no other is fit for the system
-    const auto first = paced(chosen_.method, within(kFirstTrial, kProductsInStep, kFirstSteps));
+    const int calls = within(kFirstTrial, kProductsInStep, kFirstSteps);
+    const auto first = paced(chosen_.method, calls, kMostOfCalls * calls);
     if (!first || first->status != RunStatus::interrupted || stopped_) return trial;
     span_ = first->t_end;
     if (!(span_ > 0.0) || !(passed(half_, 0) > 0.0)) return trial;
@@ -84,7 +87,7 @@ class Trial {
     for (const char* name : {"dormand_prince", "sdirk4"}) {
       const Method other{.name = name, .tolerance = kControlledTolerance};
       if (other.name == chosen_.method.name || stopped_) continue;
-      const double ns = cost_of_other(other, trial.chosen_ns / too_expensive(trial), right);
+      const double ns = cost_of_other(other, trial.chosen_ns, trial.chosen_ns / too_expensive(trial), right);
       if (ns > 0.0 && (!best || ns < trial.other_ns)) best = other, trial.other_ns = ns;
     }
     if (best && too_expensive(trial) * trial.other_ns < trial.chosen_ns) change(trial, *best);
@@ -97,7 +100,7 @@ class Trial {
   }
 
   /// As many calls of progress as cost about this much [ns], in two halves.
-  int within(double ns, double products_of_step, int most_steps) const {
+  int within(double ns, double products_of_step, double most_steps) const {
     const double steps = ns / (products_of_step * product_cost(system_));
     return 2 * static_cast<int>(
                    std::clamp(std::ceil(0.5 * steps / kCallEvery), 2.0, 0.5 * most_steps / kCallEvery));
@@ -126,14 +129,14 @@ class Trial {
     return times_[end - 1] - (end > calls ? times_[end - 1 - calls] : 0.0);
   }
 
-  /// A run of so many calls, or of more while its steps still grow: behind the last half of them they do not.
-  std::optional<RunSummary> paced(const Method& method, int calls) {
+  /// A run of so many calls, or of up to `most` while its steps still grow: behind the last half of them they do not.
+  std::optional<RunSummary> paced(const Method& method, int calls, int most) {
     half_ = static_cast<std::size_t>(calls / 2);
     return tried(method, duration_, {}, [&] {
       if (times_.size() < 2 * half_) return true;
       const bool starting =
           times_.back() < kStart * duration_ || passed(half_, 0) > kSteady * passed(half_, half_);
-      return starting && times_.size() < kMostOfCalls * 2 * half_;
+      return starting && times_.size() < static_cast<std::size_t>(most);
     });
   }
 
@@ -156,9 +159,13 @@ class Trial {
     return all;
   }
 
-  /// Of the whole run [ns]; 0: it fails, is off, or cannot be below `most`.
-  double cost_of_other(const Method& method, double most, const std::vector<std::vector<double>>& right) {
-    const auto run = paced(method, within(kOtherTrial, kProductsOfStages, kOtherSteps));
+  /// Of the whole run [ns], which the chosen method does at chosen_ns; 0: it fails, is off, or cannot be below `most`.
+  double cost_of_other(const Method& method, double chosen_ns, double most,
+                       const std::vector<std::vector<double>>& right) {
+    const int calls = within(kOtherTrial, kProductsOfStages, kOtherSteps);
+    const int while_growing =
+        within(std::min(kMostOfRun * chosen_ns, kLongestTrial), kProductsOfStages, kLongestTrial);
+    const auto run = paced(method, calls, std::max(kMostOfCalls * calls, while_growing));
     if (!run || (run->status != RunStatus::interrupted && !run->ok()) || stopped_) return 0.0;
     if (!run->ok() && !(passed(half_, 0) > 0.0)) return 0.0;
     const double ns = cost_to_end(method, *run);
