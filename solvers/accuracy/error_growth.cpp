@@ -112,11 +112,8 @@ ErrorGrowth measure_error_growth(const System& system, const ErrorGrowthOptions&
   if (method.controlled())
     method = {.name = "sdirk4", .step = o.t_end / (2.0 * static_cast<double>(std::max(steps, 1L)))};
   result.z_scale = scale.z(), result.v_scale = scale.v();
-  Vector dz(n), dv(n);
-  for (int k = 0; k < n; ++k) {
-    dz[k] = scale.z() * std::sin(1.0 + 2.0 * k);
-    dv[k] = scale.v() * std::cos(2.0 + 3.0 * k);
-  }
+  Vector dz = Vector::Zero(n), dv(n);
+  for (int k = 0; k < n; ++k) dv[k] = scale.v() * std::cos(2.0 + 3.0 * k);
   double logarithm = 0.0, largest = 0.0;
   std::vector<double> rates;
   for (int k = 0; k < o.pieces; ++k) {

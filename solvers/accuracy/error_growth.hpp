@@ -2,11 +2,12 @@
 /// How a small difference of the state grows along a run: what makes rattling trajectories comparable up to a
 /// horizon only.
 ///
-///   d_0 = 1e-9 of the largest |z| and |v| of the run, in an arbitrary direction;  run both for T / N;
+///   d_0 = 1e-9 of the largest |v| of the run, in an arbitrary direction of the rates;  run both for T / N;
 ///   d_k: the separation then, scaled back to d_0 without change of direction;  k = 1 ... N
 ///
 /// The product of the d_k / d_0 is the growth, the mean of ln(d_k / d_0) N / T the rate, for long runs the
-/// largest Lyapunov exponent. Separation: largest |dz| / largest |z| or |dv| / largest |v|.
+/// largest Lyapunov exponent. Separation: largest |dz| / largest |z| or |dv| / largest |v|. It starts in the rates alone: part of
+/// the angles of a train that drifts, or of stiff shafts, is a twist that would grow into rates at once, in linear trains as well.
 /// Source: G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Lyapunov characteristic exponents for
 /// smooth dynamical systems and for Hamiltonian systems, Meccanica 15, 1980, doi:10.1007/BF02128236.
 #include <drev/core/state.hpp>
@@ -27,7 +28,7 @@ struct ErrorGrowthOptions {
 
 struct ErrorGrowth {
   std::vector<double> t;                ///< s, ends of the pieces that were run
-  std::vector<double> growth;           ///< the largest separation up to t, over the first
+  std::vector<double> growth;           ///< the largest separation up to t, over d_0
   double rate = 0.0;                    ///< 1/s
   double rate_error = 0.0;              ///< 1/s, half of the 95 % interval, by batch means
   double z_scale = 1.0, v_scale = 1.0;  ///< largest |z| and |v| of the run

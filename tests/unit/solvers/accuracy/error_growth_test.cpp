@@ -27,6 +27,35 @@ TEST_CASE("Growth: a damped oscillator forgets, as exp(-c t / 2 m)") {
   CHECK(g.time_of(10.0) == HUGE_VAL);
 }
 
+TEST_CASE("Growth: none in linear trains, though they drift or have stiff shafts") {
+  // Free, pushed by a sine from its zero: the pair drifts by some 10 rad a second and twists by 1e-2 rad. Held, with a shaft
+  // 1e5 times as stiff as the others: 1e-9 of the largest angle in it would be 300 times as much of the rates.
+  Model drifting("free pair");
+  for (const auto& [node, inertia] : {std::pair("a", 0.012), {"b", 0.035}}) {
+    drifting.add_node(node);
+    drifting.add<Inertia>(std::string("J_") + node, {node}, {.inertia = inertia});
+  }
+  drifting.add<ShaftSpring>("shaft", {"a", "b"}, {.stiffness = 8500.0, .damping = 0.5});
+  drifting.add<AppliedTorque>("drive", {"a"}, {.harmonics = {{40.0, 20.0, -kPi / 2}}});
+  Model stiff("stiff coupling");
+  for (const char* node : {"a", "b", "c"}) {
+    stiff.add_node(node);
+    stiff.add<Inertia>(std::string("J_") + node, {node}, {.inertia = 0.1});
+  }
+  stiff.add<GroundSpring>("hold", {"a"}, {.stiffness = 1e3});
+  stiff.add<ShaftSpring>("soft", {"a", "b"}, {.stiffness = 1e3, .damping = 0.01});
+  stiff.add<ShaftSpring>("stiff", {"b", "c"}, {.stiffness = 1e8});
+  stiff.add<AppliedTorque>("drive", {"c"}, {.harmonics = {{5.0, 20.0, 0.0}}});
+  for (const Model& model : {drifting, stiff})
+    for (const double t_end : {1.7, 12.0, 18.6}) {
+      const ErrorGrowth g = measure_error_growth(
+          model.build(), {.method = {.name = "exact", .tolerance = 1e-12}, .t_end = t_end, .pieces = 40});
+      INFO(model.name() << " over " << t_end << " s");
+      CHECK(g.status == RunStatus::success);
+      CHECK(g.growth.back() < 5.0);
+    }
+}
+
 TEST_CASE("Growth: largest Lyapunov exponent of the chaotic gear pair", "[once]") {
   // Published: 0.10947 a unit of time.
   const ErrorGrowth g = measure_error_growth(
