@@ -107,6 +107,13 @@ class Run:
     def __contains__(self, channel):
         return channel in self._column
 
+    def keys(self):
+        """The names of the recorded channels, so that dict(run) has the samples of each."""
+        return self.channels
+
+    def __iter__(self):
+        return iter(self._column)
+
     def __len__(self):
         return len(self.time)
 

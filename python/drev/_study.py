@@ -59,6 +59,16 @@ class Study:
     def __getitem__(self, name):
         return self.columns[name]
 
+    def keys(self):
+        """The names of the columns, so that dict(study) has each of them."""
+        return list(self.columns)
+
+    def __iter__(self):
+        return iter(self.columns)
+
+    def __contains__(self, name):
+        return name in self.columns
+
     def __len__(self):
         return len(self.status)
 

@@ -4,8 +4,8 @@
 /// Variants differ in any parameter (speeds, backlash, stiffness, damping, firing order, tables), not in
 /// their unknowns, elements and connections. Constant steps of the generalized-alpha family are made by
 /// kLanes variants in lockstep, one in each lane of the processor's vectors, block by block over threads;
-/// anything else by one variant at a time, over threads. Results are those of single runs to rounding, and do
-/// not depend on which variants share a block or on the number of threads.
+/// anything else by one variant at a time, over threads. Results are those of single runs to rounding (of peaks in
+/// steps: ManyOptions::channels), and do not depend on which variants share a block or on the number of threads.
 ///
 /// A step that a variant cannot make with the others (Newton needs its line search, or the step must be
 /// halved) it makes by itself, as a single run would.
@@ -30,9 +30,11 @@ struct TransientOptions;
 using VariantBuilder = std::function<System(std::size_t i)>;
 
 struct ManyOptions {
-  std::vector<std::string> channels = {};  ///< whose peaks are wanted
-  int threads = 0;                         ///< 0: one for each of the machine's processors
-  bool lockstep = true;                    ///< false: one by one in any case
+  /// Whose peaks are wanted: inside steps as at their ends by exact propagation; of methods that step the largest values at
+  /// ends of steps, which a single run with Peaks(channels, false) has to rounding.
+  std::vector<std::string> channels = {};
+  int threads = 0;       ///< 0: one for each of the machine's processors
+  bool lockstep = true;  ///< false: one by one in any case
   /// An exception of one variant (it cannot be built, its options do not fit) ends the whole run with it.
   /// Else it is kept as the variant's error.
   bool stop_at_error = false;

@@ -140,6 +140,14 @@ def test_pandas_and_xarray():
     assert two_masses().modes().to_pandas()["frequency_Hz"][1] == pytest.approx(OMEGA / (2 * np.pi))
 
 
+def test_a_run_iterates_over_its_channels_as_a_table_does():
+    run = swinging().run(duration_s=0.1)
+    assert list(run) == list(run.keys()) == run.channels and all(name in run for name in run)
+    samples = dict(run)
+    assert list(samples) == run.channels
+    assert all(len(samples[name]) == len(run) and (samples[name] == run[name]).all() for name in run)
+
+
 def test_a_notebook_shows_the_report():
     run = swinging().run(duration_s=0.1, report_html=True)
     shown = run._repr_html_()

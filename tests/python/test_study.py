@@ -12,6 +12,7 @@ STEPS = {"step_s": 2e-5, "duration_s": 0.01}
 
 def same(one, other):
     assert one.columns.keys() == other.columns.keys() and len(one) == len(other)
+    assert list(one) == list(one.keys()) == list(dict(one)) == list(one.columns) and "none" not in one
     for name in one.columns:
         assert np.array_equal(one[name], other[name], equal_nan=True), name
 
