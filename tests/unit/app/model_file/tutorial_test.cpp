@@ -43,3 +43,31 @@ TEST_CASE("The commands of the tutorial print what it says", "[once]") {
   CHECK(lines >= 25);
   CHECK(read_file(folder / "train.html").size() > 100000);
 }
+
+TEST_CASE("The C++ example of the tutorial prints what the page shows", "[once]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "printed").string();
+  REQUIRE(std::system(("\"$(dirname '" DREV_EXECUTABLE "')/example_tutorial\" >'" + file + "'").c_str()) ==
+          0);
+  const std::string printed = read_file(file);
+  std::istringstream page(read_file(DREV_SOURCE_DIR "/docs/tutorial.md"));
+  const std::string indent(4, ' ');
+  bool code = false, any_code = false;  // what the example prints is indented, behind its first lines
+  int lines = 0;
+  std::size_t at = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("```")) {
+      code = !code;
+      any_code |= line == "```cpp";
+    } else if (any_code && !code && line.starts_with(indent) && line != indent + "...") {
+      std::string shown = line.substr(indent.size());
+      shown = shown.substr(0, shown.find(", energy error"));  // rounding, which differs between machines
+      INFO("shown:\n" << shown << "\nprinted:\n" << printed);
+      const std::size_t found = printed.find(shown, at);
+      REQUIRE(found != std::string::npos);
+      at = found + shown.size();
+      ++lines;
+    }
+  }
+  CHECK(lines >= 10);
+}
