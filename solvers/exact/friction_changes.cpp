@@ -81,6 +81,9 @@ void FrictionSeries::expand(const TaylorSeries& series, const State& from) {
       c.acceleration_slack += kSlack * std::abs(differs);
     }
     c.acceleration_slack *= patience_;
+    // A stuck torque near zero: what it was resolved to, from forces that are evaluated, and the series' differ by rounding.
+    const double resolved = from.history[system_.frictions()[i].history_begin + FrictionHistory::kTorque];
+    c.torque_slack = c.root && c.stuck ? patience_ * kSlack * std::abs(c.torque[0] - resolved) : 0.0;
     find_bounds(i);
   }
 }
@@ -106,7 +109,10 @@ void FrictionSeries::find_bounds(std::size_t i) {
         size[d] += std::abs(limit * c.capacity[d]);
       }
       const bool on_it = c.root && c.root_bound == static_cast<int>(side);
-      const double zero = kOnBound * size[0] + c.torque_rounding;
+      const double zero = kOnBound * size[0] + c.torque_rounding + c.torque_slack;
+      for (const Contact& other : contacts_)  // it is solved for together with theirs
+        for (std::size_t d = 0; d < std::min(size.size(), other.torque.size()); ++d)
+          size[d] = std::max(size[d], std::abs(other.torque[d]));
       c.bounds.push_back({what, std::move(g)});
       clean(c.bounds.back(), size, zero, 0.0, on_it);
     }
@@ -135,7 +141,7 @@ void FrictionSeries::find_bounds(std::size_t i) {
 /// Coefficients that are rounding become zero: the first within `zero` (or any where on_it), the second within
 /// `first`.
 void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double zero, double first,
-                           bool on_it) {
+                           bool on_it) const {
   std::vector<double>& g = bound.g;
   bound.falls = -1;
   if (!on_it && g[0] > zero) return;
@@ -145,7 +151,8 @@ void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double
   }
   g[0] = 0.0;
   for (std::size_t d = 1; d < g.size(); ++d) {
-    const double rounding = std::max(kNothing * size[d], kLeast * size[0]) + (d == 1 ? first : 0.0);
+    const double rounding =
+        patience_ * std::max(kNothing * size[d], kLeast * size[0]) + (d == 1 ? first : 0.0);
     if (std::abs(g[d]) > rounding) {
       if (g[d] < 0.0) bound.falls = static_cast<int>(d);
       return;
@@ -261,7 +268,9 @@ bool FrictionSeries::pass(const Change& change, const Assembler& assembler, Eval
   for (std::size_t i = 0; i < contacts_.size(); ++i)
     at_rest[i] = contacts_[i].stuck || contacts_[i].tied || (contacts_[i].root && !contacts_[i].open);
   if (!breaks_away && change.what != What::drive_turns) at_rest[idx(change.contact)] = 1;
-  resolve(assembler, point, at_rest);
+  // Where the change was located its own slip is rounding: of others that meet zero with it (a clutch beside a freewheel), too.
+  const double located = bound ? 0.0 : kSlack * std::abs(slip_of(c, assembler, point.state.v));
+  resolve(assembler, point, at_rest, located);
   return true;
 }
 

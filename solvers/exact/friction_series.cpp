@@ -151,7 +151,7 @@ void FrictionSeries::locate(const Assembler& assembler, EvaluatedState& point) {
 }
 
 void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
-                             const std::vector<char>& at_rest) {
+                             const std::vector<char>& at_rest, double slack) {
   const auto n = contacts_.size();
   Vector others = point.total;
   for (std::size_t i = 0; i < n; ++i)
@@ -185,7 +185,7 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     c.stuck = c.tied = false;
     if (c.open) continue;
     const bool locks = law(i).one_way() && slip < 0.0 && slip >= -kLocked * size;
-    if (at_rest[i] || locks || std::abs(slip) <= kAtRest * std::max(size, speed_scale_)) {
+    if (at_rest[i] || locks || std::abs(slip) <= std::max(kAtRest * std::max(size, speed_scale_), slack)) {
       resting.push_back(i);
       c.segment = 0;
       if (c.tie >= 0) gears.push_back(gear_at(i, 0.0, true));

@@ -129,6 +129,7 @@ class FrictionSeries final : public TermForces {
     int root_bound = 0;  // bound at which the torque stands: 1 high, -1 low
     double speed_rounding = 0.0, torque_rounding = 0.0;
     double acceleration_slack = 0.0;  // rounding of the step's first slip acceleration
+    double torque_slack = 0.0;        // and of its first stuck torque
     // Along the step.
     std::array<double, 4> capacity{};  // g(s)
     std::array<double, 2> known{};     // part of w
@@ -160,7 +161,9 @@ class FrictionSeries final : public TermForces {
   /// Per engagement, at rest: what a stuck contact can hold, or one that broke loose at this instant.
   Limits limits(std::size_t i, bool loose) const;
   double slip_of(const Contact& c, const Assembler& assembler, const Vector& v) const;
-  void resolve(const Assembler& assembler, EvaluatedState& point, const std::vector<char>& at_rest);
+  /// at_rest: contacts known to be; others are where their slip is rounding, or within `slack` of zero.
+  void resolve(const Assembler& assembler, EvaluatedState& point, const std::vector<char>& at_rest,
+               double slack = 0.0);
   void pass_derivative(const Change& change, int order, EvaluatedState& point);
   void take(const std::vector<std::size_t>& of, const FrictionSolution& solution,
             const BoxComplementarity& problem, const std::vector<GearLossRow>& gears);
@@ -168,7 +171,7 @@ class FrictionSeries final : public TermForces {
   bool depends_on_stuck(std::size_t i) const;
   void factor_stuck();
   void find_bounds(std::size_t i);
-  static void clean(Bound& bound, const std::vector<double>& size, double zero, double first, bool on_it);
+  void clean(Bound& bound, const std::vector<double>& size, double zero, double first, bool on_it) const;
   double heat(const Contact& contact, double s) const;
   // Of gears: friction_gears.cpp.
   void find_gears();
