@@ -4,6 +4,7 @@
 #include <drev/core/error.hpp>
 
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace drev {
@@ -17,6 +18,39 @@ constexpr double kLost = 0x1p-52;  // part of a sum of which rounding leaves not
 /// Entry (i, i) of the matrix with these values.
 double diagonal(const System& system, const Vector& values, int i) {
   return values[system.diagonal_slots()[idx(i)]];
+}
+
+struct WhatAndWhen {
+  std::string what;
+  double t = 0.0;
+};
+
+/// The first law of a step whose force, stored energy or dissipated power is not finite, and when: on a straight line
+/// between two motions that are finite, which is how they move but for the curvature in the step.
+std::optional<WhatAndWhen> law_not_finite_along(const Assembler& assembler, const State& from,
+                                                const State& to) {
+  constexpr int kLooks = 16;
+  const System& system = assembler.system();
+  EvaluatedState point;
+  point.state = to;
+  for (int i = 1; i <= kLooks; ++i) {
+    const double s = static_cast<double>(i) / kLooks;
+    point.state.t = from.t + s * (to.t - from.t);
+    point.state.z = from.z + s * (to.z - from.z);
+    point.state.v = from.v + s * (to.v - from.v);
+    evaluate_laws(assembler, point);
+    for (std::size_t j = 0; j < point.responses.size(); ++j) {
+      const ScalarResponse& r = point.responses[j];
+      const char* what = !std::isfinite(r.y)                  ? "the force of "
+                         : !std::isfinite(r.stored_energy)    ? "the stored energy of "
+                         : !std::isfinite(r.dissipated_power) ? "the dissipated power of "
+                                                              : nullptr;
+      if (what != nullptr)
+        return WhatAndWhen{what + system.element_instances()[idx(index(system.scalars()[j].element))].name,
+                           point.state.t};
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -85,8 +119,13 @@ std::string what_is_not_finite(const Assembler& assembler, const EvaluatedState&
 void end_not_finite(RunSummary& summary, const Assembler& assembler, const EvaluatedState& from,
                     const EvaluatedState& to) {
   const std::string what = what_is_not_finite(assembler, from, to);
-  end_run(summary, assembler.system().name(), from.state.t, RunStatus::not_finite,
-          what.empty() ? kTooLarge : what + " is not finite");
+  const auto end = [&](double t, const std::string& reason) {
+    end_run(summary, assembler.system().name(), t, RunStatus::not_finite, reason);
+  };
+  if (!what.empty()) return end(from.state.t, what + " is not finite");
+  if (const auto law = law_not_finite_along(assembler, from.state, to.state))
+    return end(law->t, law->what + " is not finite");
+  end(from.state.t, kTooLarge);
 }
 
 void check_start(RunSummary& summary, const Assembler& assembler, const EvaluatedState& start) {

@@ -27,7 +27,8 @@ void end_interrupted(RunSummary& summary, const std::string& system, double t);
 /// name; empty: none of these.
 std::string what_is_not_finite(const Assembler& assembler, const EvaluatedState& from,
                                const EvaluatedState& to);
-/// Ends a run at from's time with the first of these, or with the energy, as not finite.
+/// Ends a run as not finite: at from's time with the first of these, else with a law whose force, energy or power is
+/// not a number at a later time of the step, else with the energy.
 void end_not_finite(RunSummary& summary, const Assembler& assembler, const EvaluatedState& from,
                     const EvaluatedState& to);
 /// Ends a run whose first point has an acceleration that is not finite, and says what of it; at the assembler's time.

@@ -114,6 +114,21 @@ TEST_CASE("Same fault, same message: a law that is not finite behind a breakpoin
             "oscillator: at t = 0.5 s: the force of rope is not finite");
 }
 
+TEST_CASE(
+    "A law that is no number beyond a deflection is named by each method, with the time at which it is") {
+  Model m = unit_oscillator();
+  m.set_initial("m", 0.0, 1.0);
+  m.add<LawElement<Breaking>>("rope", {"m"}, {.to = 0.0563});
+  const Paths paths = run_all(m.build(), {.step = 1e-3, .t_end = 1.0});
+  for (const Ended* run : {&paths.stepping, &paths.lockstep, &paths.exact}) {
+    CHECK(run->summary.status == RunStatus::not_finite);
+    CHECK(without_numbers(run->summary.reason) == "oscillator: at t = # s: the force of rope is not finite");
+  }
+  // x = sin(w t)/w with w^2 = 4 pi^2 + 1 is 0.0563 m at 0.0576 s.
+  const std::string reason = paths.stepping.summary.reason;
+  CHECK(std::stod(reason.substr(reason.find("t = ") + 4)) == Approx(0.0576).epsilon(0.03));
+}
+
 TEST_CASE("Same fault, same message: an energy beyond all numbers") {
   Model m = unit_oscillator();
   m.set_initial("m", 1e300, 0.0);
