@@ -16,7 +16,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNothing = 1e-13;  // rounding of a coefficient, relative to the terms that it is summed from
 constexpr double kOnBound = 1e-11;  // a torque stands on its bound, relative to what the contact can hold
 constexpr double kSameSlope = 1e-9;  // rounding of a derivative, relative to the derivative
-constexpr double kSlack = 4.0;       // factor on the difference of two forces that differ by rounding alone
+constexpr double kMostPatience =
+    16.0;                       // at an instant of many changes: more would pass over what does happen
+constexpr double kSlack = 4.0;  // factor on the difference of two forces that differ by rounding alone
 // Rounding of a bound's higher coefficients, relative to its own terms at s = 0.
 constexpr double kLeast = 4e-15;
 
@@ -114,7 +116,7 @@ void FrictionSeries::find_bounds(std::size_t i) {
         for (std::size_t d = 0; d < std::min(size.size(), other.torque.size()); ++d)
           size[d] = std::max(size[d], std::abs(other.torque[d]));
       c.bounds.push_back({what, std::move(g)});
-      clean(c.bounds.back(), size, zero, 0.0, on_it);
+      clean(c.bounds.back(), size, zero, 0.0, on_it, std::min(patience_, kMostPatience));
     }
     return;
   }
@@ -139,9 +141,9 @@ void FrictionSeries::find_bounds(std::size_t i) {
 }
 
 /// Coefficients that are rounding become zero: the first within `zero` (or any where on_it), the second within
-/// `first`.
+/// `first`. patience: factor on what is taken for rounding.
 void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double zero, double first,
-                           bool on_it) const {
+                           bool on_it, double patience) {
   std::vector<double>& g = bound.g;
   bound.falls = -1;
   if (!on_it && g[0] > zero) return;
@@ -152,7 +154,7 @@ void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double
   g[0] = 0.0;
   for (std::size_t d = 1; d < g.size(); ++d) {
     const double rounding =
-        patience_ * std::max(kNothing * size[d], kLeast * size[0]) + (d == 1 ? first : 0.0);
+        patience * std::max(kNothing * size[d], kLeast * size[0]) + (d == 1 ? first : 0.0);
     if (std::abs(g[d]) > rounding) {
       if (g[d] < 0.0) bound.falls = static_cast<int>(d);
       return;

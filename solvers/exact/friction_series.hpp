@@ -171,7 +171,8 @@ class FrictionSeries final : public TermForces {
   bool depends_on_stuck(std::size_t i) const;
   void factor_stuck();
   void find_bounds(std::size_t i);
-  void clean(Bound& bound, const std::vector<double>& size, double zero, double first, bool on_it) const;
+  static void clean(Bound& bound, const std::vector<double>& size, double zero, double first, bool on_it,
+                    double patience = 1.0);
   double heat(const Contact& contact, double s) const;
   // Of gears: friction_gears.cpp.
   void find_gears();
