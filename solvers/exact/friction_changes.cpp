@@ -83,11 +83,11 @@ void FrictionSeries::expand(const TaylorSeries& series, const State& from) {
       c.acceleration_slack += kSlack * std::abs(differs);
     }
     c.acceleration_slack *= patience_;
-    // A stuck torque near zero: what it was resolved to, from forces that are evaluated, and the series' differ by rounding.
+    // What the torque was resolved to, from forces that are evaluated, and the series' differ by rounding.
     const double resolved = from.history[system_.frictions()[i].history_begin + FrictionHistory::kTorque];
-    c.torque_slack = c.root && c.stuck ? patience_ * kSlack * std::abs(c.torque[0] - resolved) : 0.0;
-    find_bounds(i);
+    c.torque_slack = patience_ * kSlack * std::abs(c.torque[0] - resolved);
   }
+  for (std::size_t i = 0; i < contacts_.size(); ++i) find_bounds(i);
 }
 
 void FrictionSeries::find_bounds(std::size_t i) {
@@ -111,7 +111,7 @@ void FrictionSeries::find_bounds(std::size_t i) {
         size[d] += std::abs(limit * c.capacity[d]);
       }
       const bool on_it = c.root && c.root_bound == static_cast<int>(side);
-      const double zero = kOnBound * size[0] + c.torque_rounding + c.torque_slack;
+      const double zero = kOnBound * size[0] + c.torque_rounding + (c.root ? c.torque_slack : 0.0);
       for (const Contact& other : contacts_)  // it is solved for together with theirs
         for (std::size_t d = 0; d < std::min(size.size(), other.torque.size()); ++d)
           size[d] = std::max(size[d], std::abs(other.torque[d]));

@@ -254,7 +254,9 @@ void FrictionSeries::find_gear_bounds(std::size_t i) {
   Contact& c = contacts_[i];
   const GearLoss& loss = *law(i).gear_loss();
   std::vector<double> size;
-  const double rounding = c.torque_rounding + contacts_[idx(c.tie)].torque_rounding;
+  const Contact& tie = contacts_[idx(c.tie)];
+  double rounding = c.torque_rounding + tie.torque_rounding;
+  if (c.root || c.line_root) rounding += c.torque_slack + tie.torque_slack;
   if (!c.stuck) {
     const int other = 1 - c.line;
     c.bounds.push_back(
