@@ -19,7 +19,7 @@ constexpr double kSameSlope = 1e-9;  // rounding of a derivative, relative to th
 constexpr double kMostPatience =
     16.0;                       // at an instant of many changes: more would pass over what does happen
 constexpr double kSlack = 4.0;  // factor on the difference of two forces that differ by rounding alone
-// Rounding of a bound's higher coefficients, relative to its own terms at s = 0.
+// Rounding of a bound's higher coefficients, relative to the largest terms of lower ones.
 constexpr double kLeast = 4e-15;
 
 /// int_0^s a(s) b(s) ds.
@@ -73,8 +73,15 @@ void FrictionSeries::expand(const TaylorSeries& series, const State& from) {
     }
   }
   h_ = series.step();
+  largest_.assign(terms - 1, 0.0);
+  for (const Contact& c : contacts_)
+    for (std::size_t d = 0; d < c.torque.size(); ++d)
+      largest_[d] = std::max(largest_[d], std::abs(c.torque[d]));
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Contact& c = contacts_[i];
+    const double per_torque = h_ * w_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i));
+    for (std::size_t d = 1; d < terms; ++d)
+      c.slip_size[d] = std::max(c.slip_size[d], per_torque / static_cast<double>(d) * largest_[d - 1]);
     c.acceleration_slack = c.speed_rounding;
     if (c.root && from.a.allFinite()) {
       double differs = 0.0;
@@ -112,9 +119,8 @@ void FrictionSeries::find_bounds(std::size_t i) {
       }
       const bool on_it = c.root && c.root_bound == static_cast<int>(side);
       const double zero = kOnBound * size[0] + c.torque_rounding + (c.root ? c.torque_slack : 0.0);
-      for (const Contact& other : contacts_)  // it is solved for together with theirs
-        for (std::size_t d = 0; d < std::min(size.size(), other.torque.size()); ++d)
-          size[d] = std::max(size[d], std::abs(other.torque[d]));
+      for (std::size_t d = 0; d < std::min(size.size(), largest_.size()); ++d)
+        size[d] = std::max(size[d], largest_[d]);
       c.bounds.push_back({what, std::move(g)});
       clean(c.bounds.back(), size, zero, 0.0, on_it, std::min(patience_, kMostPatience));
     }
@@ -152,9 +158,10 @@ void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double
     return;
   }
   g[0] = 0.0;
+  double lower = size[0];  // a coefficient's rounding follows from those before it, too
   for (std::size_t d = 1; d < g.size(); ++d) {
-    const double rounding =
-        patience * std::max(kNothing * size[d], kLeast * size[0]) + (d == 1 ? first : 0.0);
+    lower = std::max(lower, size[d]);
+    const double rounding = patience * std::max(kNothing * size[d], kLeast * lower) + (d == 1 ? first : 0.0);
     if (std::abs(g[d]) > rounding) {
       if (g[d] < 0.0) bound.falls = static_cast<int>(d);
       return;

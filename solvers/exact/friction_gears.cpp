@@ -245,7 +245,10 @@ std::vector<double> FrictionSeries::loss_gap(const Contact& c, const GearLoss& l
     factor[d] = line == 0 ? in : -(out + bearing[d]);
     size[d] = std::abs(tie.torque[d]) + std::abs(c.torque[d]) + std::abs(bearing[d]);
   }
-  for (std::size_t d = 0; d < c.torque.size(); ++d) gap[d] += product_at(efficiency, factor, d);
+  for (std::size_t d = 0; d < c.torque.size(); ++d) {
+    gap[d] += product_at(efficiency, factor, d);
+    if (d > 0) size[d] = std::max(size[d], largest_[d]);
+  }
   return gap;
 }
 

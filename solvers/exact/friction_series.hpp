@@ -200,7 +200,8 @@ class FrictionSeries final : public TermForces {
   Eigen::MatrixXd w_, stuck_inverse_, series_inverse_;  // the last: with the gears' directions
   std::vector<std::size_t> stuck_;
   double h_ = 1.0;
-  int known_degree_ = 0;  // degree of the engagements over the step
+  std::vector<double> largest_;  // coefficient of each degree among the torques: they are solved for together
+  int known_degree_ = 0;         // degree of the engagements over the step
   bool gears_ = false, any_on_line_ = false, located_ = false;
   double patience_ = 1.0;     // doubles with every change at one instant: what counts as rounding there
   double speed_scale_ = 0.0;  // largest speed so far: what rounding of slip speeds is relative to
