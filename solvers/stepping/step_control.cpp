@@ -26,6 +26,13 @@ StepControl::StepControl(const System& system, const Options& options)
   const Vector& direction = system.nominal_direction();
   if (system.rigid_mode_count(Contact::closed) == 1 && direction.norm() > 0.0)
     rigid_ = direction.normalized();
+  stiffness_.setZero(system.size());
+  law_forces_.setZero(system.size());
+  for (Eigen::Index i = 0; i < stiffness_.size(); ++i)
+    stiffness_[i] = system.stiffness_values()[system.diagonal_slots()[static_cast<std::size_t>(i)]];
+  for (const ScalarTerm& term : system.scalars())
+    for (const Entry& e : term.z)
+      stiffness_[e.index] += std::abs(term.force->closed_stiffness()) * e.coeff * e.coeff;
   set(options.first);
 }
 
@@ -52,11 +59,18 @@ double StepControl::next(double remaining) const {
   return h_ > 0.5 * remaining ? 0.5 * remaining : h_;
 }
 
-double StepControl::error(const State& end, const Vector& e_z, const Vector& e_v, double h) const {
+double StepControl::error(const State& end, const Vector& e_z, const Vector& e_v, double h) {
   const Scales s = with(end, 1.0);
   const int* outer = system_.pattern().outerIndexPtr();
   const int* inner = system_.pattern().innerIndexPtr();
   const double share = h * options_.tolerance / options_.duration;
+  law_forces_.setZero();
+  for (const ScalarTerm& term : system_.scalars()) {
+    double size = 0.0;
+    for (const Entry& e : term.z) size += std::abs(e.coeff * end.z[e.index]);
+    size *= std::abs(term.force->closed_stiffness());
+    for (const Entry& e : term.z) law_forces_[e.index] += std::abs(e.coeff) * size;
+  }
   // beyond_rounding, beyond_solved: what exceeds the rounding of forces on the bare inertia, and on what an implicit step
   // sets against them, about J + h/4 C + h^2/16 K. Long beside a stiff mode the first is more than the step leaves of it.
   double worst = 0.0, beyond_rounding = 0.0, beyond_solved = 0.0;
@@ -68,15 +82,15 @@ double StepControl::error(const State& end, const Vector& e_z, const Vector& e_v
   };
   for (Eigen::Index i = 0; i < e_z.size(); ++i) {
     if (!std::isfinite(e_z[i]) || !std::isfinite(e_v[i])) return std::numeric_limits<double>::infinity();
-    double force = 0.0;  // of z, and of (z_1 - z_0)/h as a rate
+    double force = law_forces_[i];  // of z, and of (z_1 - z_0)/h as a rate
     for (int k = outer[i]; k < outer[i + 1]; ++k)
       force += (std::abs(system_.stiffness_values()[k]) + 2.0 / h * std::abs(system_.damping_values()[k])) *
                std::abs(end.z[inner[k]]);
     const auto unknown = static_cast<std::size_t>(i);
     const int slot = system_.diagonal_slots()[unknown];
     const double inertia = system_.mass_values()[slot];
-    const double solved = inertia + 0.25 * h * system_.damping_values()[slot] +
-                          0.0625 * h * h * system_.stiffness_values()[slot];
+    const double solved =
+        inertia + 0.25 * h * system_.damping_values()[slot] + 0.0625 * h * h * stiffness_[i];
     const double of_z = kRounding * std::abs(end.z[i]), of_v = kRateRounding * std::abs(end.v[i]);
     const double of_force = kRounding * h * force;
     const auto kind = static_cast<std::size_t>(kind_[unknown]);

@@ -33,7 +33,7 @@ class StepControl {
   double next(double remaining) const;
   /// E of a step of length h that ends at a state, from the errors of deviations and rates. Where rounding alone may have made
   /// it, one with which the step grows: no shorter step would lower it, and steps that are all rounding would stay so.
-  double error(const State& end, const Vector& e_z, const Vector& e_v, double h) const;
+  double error(const State& end, const Vector& e_z, const Vector& e_v, double h);
   /// After an accepted step. as_planned: not cut short by a stop or contact.
   void accepted(double h, double error, bool as_planned);
   void rejected(double h, double error);
@@ -52,6 +52,8 @@ class StepControl {
   Options options_;
   std::vector<int> kind_;  // 0 turning, 1 moving along
   Vector rigid_;           // empty: does not float
+  Vector stiffness_;       // of each unknown, with the laws' where they are closed
+  Vector law_forces_;      // sizes of the laws' elastic forces at the end of the step at hand
   double h_ = 0.0, last_error_ = 1.0;
   bool after_rejection_ = false;
   Scales scales_;

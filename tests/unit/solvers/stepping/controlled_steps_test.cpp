@@ -6,6 +6,7 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/models/ready_made.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/stepping/transient.hpp>
 
@@ -197,6 +198,28 @@ TEST_CASE("Controlled steps: rounding of a stiff spring on a light disc does not
                     &in_series = series.node_map(series.node(node));
       CHECK(state.z[in_stiff.unknown] == Approx(right.z[in_series.unknown]).epsilon(1e-4));
       CHECK(state.v[in_stiff.unknown] == Approx(right.v[in_series.unknown]).epsilon(1e-4));
+    }
+  }
+}
+
+TEST_CASE("A mass that hardly moves out of the edge of a gap runs by every method, to the closed form") {
+  // From d beyond the edge at rest: a quarter of a period on the spring, then free at the speed d w.
+  constexpr double kEnd = 0.7, kOmega = 10.0;
+  for (const double d : {0.0, 1e-12, 1e-9, 1e-6}) {
+    Model m("edge");
+    m.add_node("m", NodeKind::translational);
+    m.add<Inertia>("mass", {"m"}, {.inertia = 1.0});
+    m.add<PolylineSpring>("gap", {"m"}, PolylineSpring::dead_band(kOmega * kOmega, 0.1));
+    m.set_initial("m", 0.1 + d, 0.0);
+    const System system = m.build();
+    for (const char* name : {"exact", "dormand_prince", "sdirk4"}) {
+      State state = State::initial(system);
+      const RunSummary run = run_method(system, {.name = name, .tolerance = 1e-8}, {.t_end = kEnd}, state);
+      INFO(name << " from " << d << " beyond the edge: " << run.brief_report());
+      CHECK(run.ok());
+      CHECK(run.steps < 1000);
+      const double moved = -d * (kOmega * kEnd - 0.5 * kPi);
+      CHECK(std::abs(state.z[0] - (0.1 + moved)) < 1e-6 * d + 2e-16);  // 0.1 + d is rounded
     }
   }
 }
