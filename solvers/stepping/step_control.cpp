@@ -24,7 +24,8 @@ StepControl::StepControl(const System& system, const Options& options)
     kind_[idx(map.unknown)] = system.node_kind(node) == NodeKind::translational;
   }
   const Vector& direction = system.nominal_direction();
-  if (system.rigid_mode_count(Contact::closed) == 1 && direction.norm() > 0.0)
+  if (system.rigid_mode_count(Contact::closed) == 1 && direction.norm() > 0.0 &&
+      system.elastic_mode_count() > 0)
     rigid_ = direction.normalized();
   stiffness_.setZero(system.size());
   law_forces_.setZero(system.size());

@@ -5,7 +5,7 @@
 ///   h <- 0.9 h E^(-0.7/q) E_last^(0.4/q)      q: order of e/h
 ///
 /// T is the run's length. scale is the largest deviation, or rate, so far among unknowns of one kind
-/// (turning, moving along); of a system that floats, without the motion as a rigid body. Implicit methods
+/// (turning, moving along); of a system that floats, without the motion as a rigid body, unless it has no other. Implicit methods
 /// step on a grid of 2^(1/4), so that few matrices are factored. Source of the controller: K. Gustafsson,
 /// ACM TOMS 17, 1991, doi:10.1145/210232.210242.
 #include <drev/core/state.hpp>
