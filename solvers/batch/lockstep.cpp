@@ -245,7 +245,8 @@ void Lockstep::step(double h, double t_new, double t_evaluate) {
   ++steps_;
   // As grew() in run_verdict.hpp.
   const Lanes limit = options_.energy_growth_limit * energy_.given.v;
-  const LaneMask grow = alive_ & (energy_.imbalance.v > limit) & (energy_.given.v > 0.0);
+  const LaneMask grow =
+      alive_ & (energy_.imbalance.v > limit) & (energy_.given.v > 0.0) & (energy_.imbalance.v > kNoEnergy);
   if (any(grow & grow_))
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!alive(lane) || !grow[lane] || !grow_[lane]) continue;

@@ -84,8 +84,7 @@ class ExactRun final : public StepMotion {
     summary_.t_end = now_.state.t;
     summary_.solves = series_.products();
     summary_.energy = energy.balance();
-    const double rounding = friction_.energy_of_rounding(options_.t_end - options_.t_start) +
-                            laws_.energy_of_rounding(summary_.energy.scale);
+    const double rounding = friction_.energy_of_rounding(options_.t_end - options_.t_start);
     if (!(std::abs(summary_.energy.worst_imbalance) <= rounding)) judge_energy(summary_, allowed_imbalance_);
     return summary_;
   }

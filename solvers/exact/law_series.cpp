@@ -118,17 +118,6 @@ void LawSeries::add_stiffest(TaylorSeries& series) const {
   }
 }
 
-double LawSeries::energy_of_rounding(double energy) const {
-  double sum = 0.0;
-  for (const Law& l : laws_)
-    for (const LawPiece& p : l.pieces) {
-      if (!(p.k > 0.0)) continue;
-      const double dx = kFloor * std::abs(p.y_0) / p.k;
-      sum += std::sqrt(2.0 * energy * p.k) * dx + 0.5 * p.k * dx * dx;
-    }
-  return sum;
-}
-
 void LawSeries::expand(const TaylorSeries& series, const LoadSeries& known, const LawOffsets& offsets,
                        const double* sizes, const ScaleSeries& scale_of) {
   h_ = series.step();

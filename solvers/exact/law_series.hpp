@@ -46,9 +46,6 @@ class LawSeries {
 
   /// Adds the pieces to the matrices and the right side over a step of h seconds.
   void add_to(TaylorSeries& series, const LoadSeries& known, double h) const;
-  /// What rounding dx = y_0/k of a deflection at which a piece's force y_0 + k x is zero makes of an energy E of the train,
-  /// k x^2/2 at most: sqrt(2 E k) dx + k dx^2/2 [J]. It tells where trains hardly move out of such a place.
-  double energy_of_rounding(double energy) const;
   /// Adds the stiffest pieces of all laws, to bound the fastest rate.
   void add_stiffest(TaylorSeries& series) const;
 

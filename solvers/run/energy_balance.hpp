@@ -8,6 +8,9 @@
 
 namespace drev {
 
+/// J, the thermal energy k T at 293 K: no balance is off by less, since trains that stand still move so by rounding alone.
+inline constexpr double kNoEnergy = 4e-21;
+
 /// Number: double, or LaneRow for a number of each lane's.
 template <class Number>
 struct Balance {
@@ -25,7 +28,7 @@ struct Balance {
 
 struct EnergyBalance : Balance<double> {
   /// worst_imbalance over scale [-]; 0 for a run without energy.
-  double relative_error() const { return scale > 0.0 ? worst_imbalance / scale : 0.0; }
+  double relative_error() const { return scale > kNoEnergy ? worst_imbalance / scale : 0.0; }
 };
 
 /// Enters a step that ends at t [s]: what is kinetic and stored there, what was put in and what dissipated

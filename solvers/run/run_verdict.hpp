@@ -5,6 +5,7 @@
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 
+#include <algorithm>
 #include <string>
 
 namespace drev {
@@ -38,7 +39,7 @@ void check_start(RunSummary& summary, const Assembler& assembler, const Evaluate
 /// which that is true are unstable: one alone may be a load that sets in on parts at rest, which an explicit
 /// step does not move yet, so that no work is seen although they start.
 inline bool grew(const EnergyBalance& balance, double growth_limit) {
-  return balance.imbalance > growth_limit * balance.given && balance.given > 0.0;
+  return balance.imbalance > std::max(kNoEnergy, growth_limit * balance.given) && balance.given > 0.0;
 }
 /// Ends a run as unstable: its energy grew from nothing beyond the limit.
 void end_growing_run(RunSummary& summary, const std::string& system, double t, double growth_limit);
