@@ -164,7 +164,7 @@ class Trial {
                        const std::vector<std::vector<double>>& right) {
     const int calls = within(kOtherTrial, kProductsOfStages, kOtherSteps);
     const int while_growing =
-        within(std::min(kMostOfRun * chosen_ns, kLongestTrial), kProductsOfStages, kLongestTrial);
+        within(std::min(kMostOfRun * chosen_ns, kLongestTrial), kProductsOfStages, HUGE_VAL);
     const auto run = paced(method, calls, std::max(kMostOfCalls * calls, while_growing));
     if (!run || (run->status != RunStatus::interrupted && !run->ok()) || stopped_) return 0.0;
     if (!run->ok() && !(passed(half_, 0) > 0.0)) return 0.0;

@@ -16,8 +16,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNothing = 1e-13;  // rounding of a coefficient, relative to the terms that it is summed from
 constexpr double kOnBound = 1e-11;  // a torque stands on its bound, relative to what the contact can hold
 constexpr double kSameSlope = 1e-9;  // rounding of a derivative, relative to the derivative
-constexpr double kMostPatience =
-    16.0;                       // at an instant of many changes: more would pass over what does happen
+// Factor on rounding at an instant of many changes: more would pass over what does happen.
+constexpr double kMostPatience = 16.0;
 constexpr double kSlack = 4.0;  // factor on the difference of two forces that differ by rounding alone
 // Rounding of a bound's higher coefficients, relative to the largest terms of lower ones.
 constexpr double kLeast = 4e-15;

@@ -129,7 +129,7 @@ class FrictionSeries final : public TermForces {
     int root_bound = 0;  // bound at which the torque stands: 1 high, -1 low
     double speed_rounding = 0.0, torque_rounding = 0.0;
     double acceleration_slack = 0.0;  // rounding of the step's first slip acceleration
-    double torque_slack = 0.0;        // and of its first stuck torque
+    double torque_slack = 0.0;        // and of its first torque
     // Along the step.
     std::array<double, 4> capacity{};  // g(s)
     std::array<double, 2> known{};     // part of w

@@ -4,7 +4,6 @@
 #include <drev/core/error.hpp>
 
 #include <cmath>
-#include <optional>
 #include <sstream>
 
 namespace drev {
@@ -20,15 +19,13 @@ double diagonal(const System& system, const Vector& values, int i) {
   return values[system.diagonal_slots()[idx(i)]];
 }
 
-struct WhatAndWhen {
-  std::string what;
-  double t = 0.0;
-};
+const std::string& name_of(const System& system, ElementId element) {
+  return system.element_instances()[idx(index(element))].name;
+}
 
-/// The first law of a step whose force, stored energy or dissipated power is not finite, and when: on a straight line
-/// between two motions that are finite, which is how they move but for the curvature in the step.
-std::optional<WhatAndWhen> law_not_finite_along(const Assembler& assembler, const State& from,
-                                                const State& to) {
+/// The first law of a step whose force, stored energy or dissipated power is not finite; empty: none. Sets t to when: on a straight
+/// line between two motions that are finite, which is how they move but for the curvature in the step.
+std::string law_not_finite_along(const Assembler& assembler, const State& from, const State& to, double& t) {
   constexpr int kLooks = 16;
   const System& system = assembler.system();
   EvaluatedState point;
@@ -45,12 +42,12 @@ std::optional<WhatAndWhen> law_not_finite_along(const Assembler& assembler, cons
                          : !std::isfinite(r.stored_energy)    ? "the stored energy of "
                          : !std::isfinite(r.dissipated_power) ? "the dissipated power of "
                                                               : nullptr;
-      if (what != nullptr)
-        return WhatAndWhen{what + system.element_instances()[idx(index(system.scalars()[j].element))].name,
-                           point.state.t};
+      if (what == nullptr) continue;
+      t = point.state.t;
+      return what + name_of(system, system.scalars()[j].element);
     }
   }
-  return std::nullopt;
+  return "";
 }
 
 }  // namespace
@@ -92,9 +89,6 @@ void end_interrupted(RunSummary& summary, const std::string& system, double t) {
 std::string what_is_not_finite(const Assembler& assembler, const EvaluatedState& from,
                                const EvaluatedState& to) {
   const System& system = assembler.system();
-  const auto name_of = [&](ElementId element) {
-    return system.element_instances()[idx(index(element))].name;
-  };
   EvaluatedState point;
   // Where the step began, then where it led to: its own end is no number any more.
   for (const double ahead : {0.0, assembler.time() - from.state.t}) {
@@ -102,13 +96,14 @@ std::string what_is_not_finite(const Assembler& assembler, const EvaluatedState&
     point.state.z += ahead * from.state.v;
     for (const LoadTerm& load : system.loads()) {
       const LoadResponse r = assembler.load(load, point.state.z, point.state.v);
-      if (!std::isfinite(r.torque)) return "the load of " + name_of(load.element);
+      if (!std::isfinite(r.torque)) return "the load of " + name_of(system, load.element);
       if (!std::isfinite(r.dtorque_dangle) || !std::isfinite(r.dtorque_dspeed))
-        return "the slope of the load of " + name_of(load.element);
+        return "the slope of the load of " + name_of(system, load.element);
     }
     evaluate_laws(assembler, point);
     for (std::size_t j = 0; j < point.responses.size(); ++j)
-      if (!std::isfinite(point.responses[j].y)) return "the force of " + name_of(system.scalars()[j].element);
+      if (!std::isfinite(point.responses[j].y))
+        return "the force of " + name_of(system, system.scalars()[j].element);
   }
   for (int k = 0; k < system.size(); ++k)
     if (!std::isfinite(to.state.z[k]) || !std::isfinite(to.state.v[k]))
@@ -118,14 +113,11 @@ std::string what_is_not_finite(const Assembler& assembler, const EvaluatedState&
 
 void end_not_finite(RunSummary& summary, const Assembler& assembler, const EvaluatedState& from,
                     const EvaluatedState& to) {
-  const std::string what = what_is_not_finite(assembler, from, to);
-  const auto end = [&](double t, const std::string& reason) {
-    end_run(summary, assembler.system().name(), t, RunStatus::not_finite, reason);
-  };
-  if (!what.empty()) return end(from.state.t, what + " is not finite");
-  if (const auto law = law_not_finite_along(assembler, from.state, to.state))
-    return end(law->t, law->what + " is not finite");
-  end(from.state.t, kTooLarge);
+  double t = from.state.t;
+  std::string what = what_is_not_finite(assembler, from, to);
+  if (what.empty()) what = law_not_finite_along(assembler, from.state, to.state, t);
+  end_run(summary, assembler.system().name(), t, RunStatus::not_finite,
+          what.empty() ? kTooLarge : what + " is not finite");
 }
 
 void check_start(RunSummary& summary, const Assembler& assembler, const EvaluatedState& start) {
