@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <utility>
 
 #include "app/base/interrupt.hpp"
 #include "app/cli/exit_codes.hpp"
@@ -27,9 +28,9 @@ int exit_code(const RunOutcome& outcome) {
 int run_command(const CommandLine& line) {
   if (means_variants(line)) return run_variants(line);
   if (means_many(line)) return run_many(line);
-  const RunRequest request = request_run(line);
+  RunRequest request = request_run(line);
   watch_signals();
-  const RunOutcome outcome = run_and_write(request);
+  const RunOutcome outcome = run_and_write(std::move(request));
   if (!outcome.warning.empty()) say(outcome.warning);
   for (const std::string& note : outcome.notes) say(note);
   print(line.json ? outcome.json : outcome.text);

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "app/base/interrupt.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/cli/method_option.hpp"
 #include "app/cli/model_option.hpp"
@@ -28,7 +27,6 @@ namespace {
 constexpr double kMostRows = 1e8;  // of one run
 // Steps of one run, where --step says how long they are; where the method finds them only the fewest possible are known.
 constexpr double kMostSteps = 1e10, kMostFoundSteps = 1e12;
-constexpr double kPartOfTolerance = 0.1;  // that a reduction no one asked for may add
 
 /// About x, as 1, 2 or 5 times a power of ten.
 double round_number(double x) {
@@ -92,16 +90,10 @@ std::optional<double> read_accuracy(const CommandLine& line, std::vector<Finding
   return value;
 }
 
-/// What error a reduction may add: as asked for; else a tenth of the tolerance of controlled steps that no
-/// one asked for, which are what large models are run with.
-std::optional<double> read_reduce(const CommandLine& line, const Method& method, bool any_method,
-                                  std::vector<Finding>& findings) {
+/// What error a reduction may add, as asked for.
+std::optional<double> read_reduce(const CommandLine& line, std::vector<Finding>& findings) {
   const auto text = line.option("--reduce");
-  if (!text) {
-    if (!any_method || !method.controlled()) return {};
-    return kPartOfTolerance * method.tolerance;
-  }
-  if (*text == "off") return {};
+  if (!text || *text == "off") return {};
   if (line.option("--accuracy"))
     findings.push_back({kCommandLine, "--reduce", *text, "",
                         "cannot be given with --accuracy, whose figures are the whole model's"});
@@ -160,12 +152,7 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
   if (line.option("--step") && !line.option("--method"))
     return {stepping("average_acceleration", line, step, findings), "the default where a step is asked for"};
   if (!line.option("--method") && !line.option("--tolerance"))
-    return model && (line.option("--accuracy") || line.option("--table"))
-               ? choose_method(model->system, duration, step)
-           : model ? try_methods(model->system, choose_method(model->system, duration, step), duration,
-                                 [] { return !interrupted(); })
-                         .choice
-                   : MethodChoice{};
+    return model ? choose_method(model->system, duration, step) : MethodChoice{};
   const std::string reason =
       line.option("--method") ? "asked for" : "the default where a tolerance is asked for";
   if (!line.option("--method") && model && why_not_exact(model->system))
@@ -177,9 +164,13 @@ MethodChoice find_method(const std::optional<ModelRequest>& model, const Command
   return {{.name = kExact, .tolerance = read_tolerance(line, true, findings)}, reason};
 }
 
-/// A run that no one could wait for, or whose steps rounding would spoil.
-void check_duration(const System& system, const Method& method, double duration,
+/// A run that no one could wait for, or whose steps rounding would spoil; any method may take its place where none was
+/// asked for.
+void check_duration(const System& system, bool any_method, MethodChoice& choice, double duration,
                     std::vector<Finding>& findings) {
+  const Method& method = choice.method;
+  if (least_steps(system, method, duration) <= kMostFoundSteps) return;
+  if (any_method) choice = try_methods(system, choice, duration).choice;
   const double steps = least_steps(system, method, duration);
   if (steps <= kMostFoundSteps) return;
   const double longest = duration * kMostFoundSteps / steps;
@@ -308,15 +299,16 @@ RunRequest request_run(const CommandLine& given) {
   const std::string limit = model ? "(the run's duration)" : "run's duration";
   const double high = model ? duration : HUGE_VAL;
   const std::size_t before_method = findings.size();
-  const MethodChoice method = find_method(model, line, findings);
-  Method chosen = method.method;
-  if (line.option("--step") && !chosen.exact())
-    chosen.step = read_time("--step", *line.option("--step"), {duration / kMostSteps, high}, limit, findings);
-  if (model && findings.size() == before_method) check_duration(model->system, chosen, duration, findings);
+  MethodChoice method = find_method(model, line, findings);
   const std::optional<double> accuracy = read_accuracy(line, findings);
   const bool any_method =
       !line.option("--method") && !line.option("--step") && !line.option("--tolerance") && !accuracy;
-  const std::optional<double> reduce = read_reduce(line, chosen, any_method, findings);
+  Method& chosen = method.method;
+  if (line.option("--step") && !chosen.exact())
+    chosen.step = read_time("--step", *line.option("--step"), {duration / kMostSteps, high}, limit, findings);
+  if (model && findings.size() == before_method)
+    check_duration(model->system, any_method, method, duration, findings);
+  const std::optional<double> reduce = read_reduce(line, findings);
   if (model && findings.size() == before_method && line.option("--method") && !accuracy && !reduce)
     check_stability(model->system, chosen, findings);
   const Start start = read_start(line, model ? model->model_case.start : Start::rest, findings);
@@ -343,6 +335,7 @@ RunRequest request_run(const CommandLine& given) {
           method.reason,
           any_method,
           reduce,
+          any_method && !line.option("--reduce"),
           line.option("--out"),
           std::move(record),
           every,

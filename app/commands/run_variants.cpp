@@ -187,8 +187,7 @@ VariantStudy study_of(const CommandLine& line) {
   CommandLine first = line;  // What is wrong with all variants is said once, with what is wrong above.
   for (const char* option : {"--out", "--report", "--jobs", "--resume", "--sample", "--correlate", "--vary"})
     first.options.erase(option);
-  first.keeps_history = true;       // --record needs no file
-  first.options["--table"] = {""};  // no method by trial, which may find another one another time
+  first.keeps_history = true;  // --record needs no file
   for (const auto& [option, why] : kWithout)
     if (blamed(findings, option)) first.options.erase(option);
   VariantList variants;

@@ -58,6 +58,7 @@ RunFiles::RunFiles(const RunRequest& request) : request_(request) {
 }
 
 std::vector<Observer*> RunFiles::observers(const RunPlan& plan) {
+  if (summary_) summary_->replace(running_as_json(request_));  // the method is settled
   const System& system = system_of(request_, plan);
   std::vector<Observer*> all;
   if (history_) {
@@ -156,8 +157,9 @@ void RunFiles::write_reports(const RunResult& result) {
   if (report_) commit(*report_);
 }
 
-RunOutcome run_and_write(const RunRequest& request, const Watchers& watchers) {
+RunOutcome run_and_write(RunRequest request, const Watchers& watchers) {
   RunFiles files(request);
+  settle_method(request);
   const RunPlan plan = plan_run(request);
   std::vector<Observer*> observers = files.observers(plan);
   if (watchers)

@@ -56,6 +56,6 @@ class RunFiles {
 using Watchers = std::function<std::vector<Observer*>(const System& system)>;
 
 /// Executes the requested run and writes its files. Throws OutputError if these cannot be opened.
-RunOutcome run_and_write(const RunRequest& request, const Watchers& watchers = {});
+RunOutcome run_and_write(RunRequest request, const Watchers& watchers = {});
 
 }  // namespace drev::app

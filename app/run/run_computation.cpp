@@ -23,6 +23,8 @@ namespace drev::app {
 
 namespace {
 
+constexpr double kPartOfTolerance = 0.1;  // that a reduction no one asked for may add
+
 class Timer {
  public:
   double seconds() const {
@@ -227,6 +229,16 @@ std::vector<std::string> shown_channels(const RunRequest& request) {
 }
 
 }  // namespace
+
+void settle_method(RunRequest& request) {
+  if (!request.any_method) return;
+  const MethodTrial trial = try_methods(request.model.system, {request.method, request.method_reason},
+                                        request.model.model_case.duration, [] { return !interrupted(); });
+  request.method = trial.choice.method;
+  request.method_reason = trial.choice.reason;
+  if (request.any_reduce && request.method.controlled())
+    request.reduce = kPartOfTolerance * request.method.tolerance;
+}
 
 RunPlan plan_run(const RunRequest& request) {
   RunPlan plan{.method = request.method, .method_reason = request.method_reason};

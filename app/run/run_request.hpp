@@ -18,6 +18,7 @@ struct RunRequest {
   std::string method_reason;        ///< why this one; a sentence without full stop
   bool any_method = false;          ///< none was asked for
   std::optional<double> reduce;     ///< relative error that a reduction may add; none: no reduction
+  bool any_reduce = false;          ///< nothing was said on it, and any method is right
   std::optional<std::string> out;   ///< directory
   std::vector<std::string> record;  ///< channels of history.csv and of the report
   double every = 0.0;               ///< s

@@ -29,10 +29,12 @@ Run* run(const Request& asked) {
   Watch watch(asked);
   {
     const nb::gil_scoped_release unlocked;
-    const app::RunRequest request = app::request_run(line);
-    result->outcome = app::run_and_write(request, [&](const System& system) -> std::vector<Observer*> {
-      return {&result->recorder.emplace(system, request.record, request.every)};
-    });
+    app::RunRequest request = app::request_run(line);
+    const auto watchers = [&result, record = request.record,
+                           every = request.every](const System& system) -> std::vector<Observer*> {
+      return {&result->recorder.emplace(system, record, every)};
+    };
+    result->outcome = app::run_and_write(std::move(request), watchers);
   }
   result->stopped = watch.stopped();
   return result.release();
