@@ -258,10 +258,11 @@ void FmuInstance::enter_initialization(double t_start, double t_stop, double tol
   state_.started = false;
 }
 
-void FmuInstance::exit_initialization() {
+std::string FmuInstance::exit_initialization() {
   require(state_.mode == FmuMode::initialization, "initialization", "has not begun");
   if (!state_.started) start();
   state_.mode = FmuMode::step;
+  return start_warning_;
 }
 
 void FmuInstance::terminate() {
@@ -275,6 +276,7 @@ void FmuInstance::start() {
   for (std::size_t i = 0; i < state_.speeds.size(); ++i)
     state_.speeds[i] = {{state_.t_start, state_.speed_values[i].value, 0.0}, built_->start_deviations[i]};
   hand_inputs_on();
+  start_warning_.clear();
   const ModelCase& model_case = built_->model_case;
   if (model_case.start == Start::rest) {
     state_.state = State::initial(built_->system, state_.t_start);
@@ -287,8 +289,9 @@ void FmuInstance::start() {
         find_start(built_->system, model_case.start,
                    {.cycle = constant && model_case.static_turn > 0.0 ? model_case.static_turn / speed : 0.0,
                     .duration = model_case.duration,
-                    .method = {.name = "exact"}});
+                    .method = {.name = kExact, .tolerance = ExactOptions{}.tolerance}});
     state_.state = State::initial(found.system, state_.t_start);
+    start_warning_ = found.unsettled();
   }
   find_acceleration();
   state_.started = true;

@@ -70,7 +70,8 @@ class FmuInstance {
   /// tolerance: relative tolerance [-], 0: the default. t_start, t_stop [s]; t_stop <= t_start: there is no
   /// stop time.
   void enter_initialization(double t_start, double t_stop, double tolerance);
-  void exit_initialization();
+  /// Returns a warning of the start state; empty: none.
+  std::string exit_initialization();
   /// A step from t over h [s], or to the first contact change if that is requested.
   FmuStepped step(double t, double h, const FmuStepWishes& wishes = {});
   /// sum_j (dy_i/du_j) seed_j of outputs y by inputs u in the current state, with the inputs as set: the
@@ -108,6 +109,7 @@ class FmuInstance {
   std::unique_ptr<const ModelFile> file_;
   std::vector<FmuVariable> variables_;
   FmuState state_;
+  std::string start_warning_ = {};
   std::unique_ptr<Built> built_;
   /// The point inside a step at which the importer is being called.
   struct {

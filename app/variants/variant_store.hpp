@@ -3,8 +3,8 @@
 /// that counts as done is lost by a killed process, a full disk or a power failure.
 ///
 /// Its head has the study's description as text, with its checksum. After it each block of variants has a
-/// place of its own, of equal length: the numbers of its rows, where the reasons of its failed variants are,
-/// and the checksum of all this and of the block's number. The reasons follow behind all places, in the order
+/// place of its own, of equal length: the numbers of its rows, where the reasons of its variants (why they failed, or
+/// their warnings) are, and the checksum of all this and of the block's number. The reasons follow behind all places, in the order
 /// in which the blocks are stored, since most blocks have none. A block is done if its checksum is right; a
 /// block that was being written when the process ended is detected by it and computed again. A place is
 /// written once. Space for all places is reserved at the start, so that a disk that is too full is reported

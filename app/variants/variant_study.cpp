@@ -93,6 +93,7 @@ struct VariantStudy::Built {
   std::optional<System> system;  // nullopt: it cannot be built, or has no start
   VariantStatus status = VariantStatus::success;
   std::string reason;
+  std::string warning = {};  ///< of its start; empty: none
   double duration = 0.0;
   std::shared_ptr<const Watched> watched = {};
 };
@@ -217,9 +218,12 @@ VariantStudy::Built VariantStudy::build(const ParameterValues& values) const {
     const ModelCase model_case = request_.model.entry->build(parameters);
     System system = model_case.model.build();
     built.duration = request_.duration.value_or(model_case.duration);
-    if (request_.start != Start::rest)
-      system =
-          find_start(system, request_.start, {.duration = built.duration, .method = request_.method}).system;
+    if (request_.start != Start::rest) {
+      FoundStart found =
+          find_start(system, request_.start, {.duration = built.duration, .method = request_.method});
+      built.warning = found.unsettled();
+      system = std::move(found.system);
+    }
     built.watched = watched_by(model_case, system);
     built.system.emplace(std::move(system));
   } catch (const ModelError& error) {
@@ -242,7 +246,14 @@ void VariantStudy::enter(const Built& built, const VariantResult& result, std::s
     status = result.error.empty() ? status_of(result.summary.status) : VariantStatus::failed;
     reason = result.error.empty() ? result.summary.reason : result.error;
   }
-  if (status != VariantStatus::success) rows.set_reason(place, reason.empty() ? status_text(status) : reason);
+  if (status == VariantStatus::success) {  // the warnings of its run are its reason
+    std::vector<std::string> warnings = result.summary.warnings;
+    if (!built.warning.empty()) warnings.push_back(built.warning);
+    reason = join(warnings, "; ");
+  } else if (reason.empty()) {
+    reason = status_text(status);
+  }
+  if (!reason.empty()) rows.set_reason(place, reason);
   double* row = rows.numbers.data() + place * row_size();
   *row++ = static_cast<double>(status);
   if (status != VariantStatus::success && status != VariantStatus::energy_error) return;

@@ -85,23 +85,49 @@ Json figure_object(const VariantStudy& study, const FigureStatistics& s) {
   return object;
 }
 
-struct Failure {
+struct Remark {
   std::uint64_t variant;
   VariantStatus status;
   std::string reason;
 };
 
-/// The first failed variants, up to kFailuresKept.
-std::vector<Failure> failures_of(const VariantStudy& study, const VariantStore& store) {
-  std::vector<Failure> all;
-  for (std::uint64_t block = 0; block < study.blocks() && all.size() < kFailuresKept; ++block) {
+/// What there is to say of single variants: the first that failed and the first with a warning, up to kFailuresKept each.
+struct Remarks {
+  std::vector<Remark> failures, warnings;
+  std::uint64_t warned = 0;  ///< how many have a warning
+};
+
+Remarks remarks_of(const VariantStudy& study, const VariantStore& store) {
+  Remarks all;
+  for (std::uint64_t block = 0; block < study.blocks(); ++block) {
     const BlockRows rows = store.get(block);
-    for (std::uint64_t i = 0; i < study.count_of(block) && all.size() < kFailuresKept; ++i)
-      if (const double status = rows.numbers[i * study.row_size()]; status != 0.0)
-        all.push_back({study.first_of(block) + i, static_cast<VariantStatus>(static_cast<int>(status)),
-                       rows.reason(i)});
+    for (std::uint64_t i = 0; i < study.count_of(block); ++i) {
+      const auto status = static_cast<VariantStatus>(static_cast<int>(rows.numbers[i * study.row_size()]));
+      const bool failed = status != VariantStatus::success;
+      if (!failed && rows.reason(i).empty()) continue;
+      if (!failed) ++all.warned;
+      std::vector<Remark>& list = failed ? all.failures : all.warnings;
+      if (list.size() < kFailuresKept) list.push_back({study.first_of(block) + i, status, rows.reason(i)});
+    }
   }
   return all;
+}
+
+/// The first remarks as text; `of` in all; what: "more failed", of those that are left out.
+std::string remarks_text(const VariantStudy& study, const std::vector<Remark>& remarks, std::uint64_t of,
+                         const std::string& what, const std::string& folder) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kFailuresTold, remarks.size()); ++i) {
+    const Remark& r = remarks[i];
+    text += wrap("variant " + std::to_string(r.variant) + " (" + varied_text(study, r.variant) +
+                     "): " + (r.status == VariantStatus::success ? "warning" : status_text(r.status)) + ": " +
+                     r.reason,
+                 2);
+  }
+  if (of > kFailuresTold)
+    text += "  " + std::to_string(of - kFailuresTold) + " " + what + "; " + folder + "/variants.json lists " +
+            (of > remarks.size() ? "the first " + std::to_string(remarks.size()) : "all") + "\n";
+  return text;
 }
 
 std::string figures_text(const VariantStudy& study, const VariantStatistics& statistics) {
@@ -174,13 +200,16 @@ VariantSummary summary_of(const VariantStudy& study, const VariantStatistics& st
   summary.exit_code = exit_code_of(json);
   json["figures"] = Json::array();
   for (const FigureStatistics& s : statistics.figures()) json["figures"].push_back(figure_object(study, s));
-  json["failures"] = Json::array();
-  const std::vector<Failure> failures = failures_of(study, store);
-  for (const Failure& f : failures)
+  const Remarks remarks = remarks_of(study, store);
+  json["failures"] = json["warnings"] = Json::array();
+  for (const Remark& f : remarks.failures)
     json["failures"].push_back({{"variant", f.variant},
                                 {"status", status_text(f.status)},
                                 {"varied", varied_object(study, f.variant)},
                                 {"reason", f.reason}});
+  for (const Remark& w : remarks.warnings)
+    json["warnings"].push_back(
+        {{"variant", w.variant}, {"varied", varied_object(study, w.variant)}, {"warning", w.reason}});
 
   std::string& text = summary.text;
   const Method& method = study.request().method;
@@ -189,15 +218,8 @@ VariantSummary summary_of(const VariantStudy& study, const VariantStatistics& st
                                                    ? ", eight variants in lockstep"
                                                    : ", one by one: " + study.why_not_lockstep())) +
          "\n" + figures_text(study, statistics) + "\n";
-  for (std::size_t i = 0; i < std::min(kFailuresTold, failures.size()); ++i)
-    text += wrap("variant " + std::to_string(failures[i].variant) + " (" +
-                     varied_text(study, failures[i].variant) + "): " + status_text(failures[i].status) +
-                     ": " + failures[i].reason,
-                 2);
-  if (count - good > kFailuresTold)
-    text += "  " + std::to_string(count - good - kFailuresTold) + " more failed; " + folder +
-            "/variants.json lists " +
-            (count - good > failures.size() ? "the first " + std::to_string(failures.size()) : "all") + "\n";
+  text += remarks_text(study, remarks.failures, count - good, "more failed", folder) +
+          remarks_text(study, remarks.warnings, remarks.warned, "more have a warning", folder);
   text += labelled("table", table_path(folder));
   return summary;
 }

@@ -12,7 +12,8 @@
 
 namespace drev::app {
 
-inline constexpr std::size_t kFailuresKept = 1000;  ///< largest number of failures in variants.json
+inline constexpr std::size_t kFailuresKept =
+    1000;  ///< largest number of failures, and of warnings, in variants.json
 
 /// The outcome of a study.
 struct VariantSummary {

@@ -83,14 +83,16 @@ class StudyStore {
   }
   void sync() { store_->sync(); }
   std::string path() const { return app::VariantStore::path_in(folder_); }
-  /// Why variants failed, by their numbers: all that did, or of a table that is complete already those which
-  /// its summary lists.
+  /// Why variants failed, and the warnings of others, by their numbers: all there are, or of a table that is complete already
+  /// those which its summary lists.
   std::map<std::uint64_t, std::string> reasons() const {
     std::map<std::uint64_t, std::string> all;
     if (complete_) {
       const app::Json summary = app::summary_of_table(folder_).value_or(app::Json::object());
       for (const app::Json& failure : summary.value("failures", app::Json::array()))
         all.emplace(failure.at("variant"), failure.at("reason"));
+      for (const app::Json& warning : summary.value("warnings", app::Json::array()))
+        all.emplace(warning.at("variant"), warning.at("warning"));
       return all;
     }
     for (std::uint64_t block = 0; block < study_.blocks(); ++block) {

@@ -35,12 +35,11 @@ def _rows(spec, first, count, stop=None):
 
 class Study:
     """The rows of a study. study["deflection_deg"]: a column; `columns`: every one by its name, parameters first;
-    `units`; `status`: of each variant; `reasons`: why variants failed, by their numbers (of a study that was complete
-    already: of the first 1000 that did); `description`: what the rows follow from."""
+    `units`; `status`: of each variant; `reasons`: why variants failed, by their numbers, `warnings`: what a single run
+    with these parameters would warn of (of a study that was complete already: of the first 1000 each); `description`: what the rows follow from."""
 
     def __init__(self, source, numbers, reasons):
         self.description = json.loads(source.description)
-        self.reasons = reasons
         self.units = dict(source.figures)
         names = [name for name, _ in source.figures]
         table = numbers.reshape(-1, 1 + len(names))
@@ -53,6 +52,8 @@ class Study:
             except ValueError:
                 self.columns[name] = np.array(texts)
         self.status = np.array(_drev.variant_statuses)[table[:, 0].astype(int)]
+        self.reasons = {at: text for at, text in reasons.items() if self.status[at] != "success"}
+        self.warnings = {at: text for at, text in reasons.items() if self.status[at] == "success"}
         for at, name in enumerate(names):
             self.columns[name] = np.ascontiguousarray(table[:, 1 + at])
 

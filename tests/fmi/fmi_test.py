@@ -214,6 +214,31 @@ def tunable():
     slave.freeInstance()
 
 
+def unsettled():
+    """A periodic start that is no steady state is said when the instance starts, as drev run says it."""
+    path = export(write("rattle.toml", """format = 1
+[nodes]
+motor = { constant_speed_rad_per_s = 100 }
+disc = {}
+[elements]
+J = { type = "inertia", node = "disc", inertia_kg_m2 = 2 }
+teeth = { type = "dead_band_coupling", nodes = ["motor", "disc"], stiffness_Nm_per_rad = 2e5, gap_rad = 0.02, \
+damping_Nms_per_rad = 20 }
+load = { type = "engine_order_torque", node = "disc", mean_Nm = 20, twist_feedback = false, \
+harmonics = { order = [1], amplitude_Nm = [500] } }
+[run]
+start = "periodic"
+duration_s = 0.1
+""".replace("\\\n", "")), "rattle", "--record", "disc.angle_rad")
+    fmu = Fmu(path)
+    slave = fmu.instance()
+    assert len(slave.messages) == 1 and "does not start in a periodic steady state" in slave.messages[0], slave.messages
+    slave.doStep(currentCommunicationPoint=0.0, communicationStepSize=1e-3)
+    assert len(slave.messages) == 1
+    slave.terminate()
+    slave.freeInstance()
+
+
 def hostile():
     """Random calls with wrong arguments, in a process of its own, must neither crash it nor be answered with success."""
     path = export(model("gear_pair"), "hostile", "--torque", "wheel", "--record", "wheel.angle_rad,mesh.force_N")
@@ -266,7 +291,7 @@ def beyond_steps():
     advanced.events(DREV, export, model, FOLDER)
 
 
-PARTS = [documented, direct, by_simulate_fmu, inputs, coupled, states, parameters, tunable, hostile, refused,
+PARTS = [documented, direct, by_simulate_fmu, inputs, coupled, states, parameters, tunable, unsettled, hostile, refused,
          import_of_fmus, beyond_steps]
 shutil.rmtree(FOLDER, ignore_errors=True)
 os.makedirs(FOLDER)

@@ -38,6 +38,20 @@ def test_what_is_wrong_is_a_model_error():
         drev.load("gear_drive").study({"backlash_m": [1, 2]}, **STEPS)
 
 
+def test_variants_have_the_warnings_of_their_runs(tmp_path):
+    pair = drev.load("two_inertia")
+    frequencies, steps = [5, 40], {"step_s": 2e-3, "duration_s": 0.1}
+    study = pair.study({"torque_frequency_Hz": frequencies}, **steps)
+    assert list(study.status) == ["success", "success"] and study.reasons == {}
+    for at, frequency in enumerate(frequencies):
+        warnings = "; ".join(pair.set(torque_frequency_Hz=frequency).run(**steps).summary["warnings"])
+        assert warnings.startswith(study.warnings.get(at, "")) and (at in study.warnings) == bool(warnings)
+    assert "too long for what acts" in study.warnings[1]
+    for resume in (False, True):  # computed, then from its table
+        stored = pair.study({"torque_frequency_Hz": frequencies}, out=tmp_path, resume=resume, **steps)
+        assert stored.warnings == study.warnings and stored.reasons == {}
+
+
 def test_each_variant_has_its_own_status_reason_and_duration(tmp_path):
     drive = drev.load("gear_drive")
     study = drive.study({"backlash_mm": [99, 0.1, 20]}, **STEPS)

@@ -109,10 +109,8 @@ DREV_FMI int fmi2EnterInitializationMode(void* component) {
 }
 
 DREV_FMI int fmi2ExitInitializationMode(void* component) {
-  return guard(component, "fmi2ExitInitializationMode", [](Component& c) {
-    c.fmu->exit_initialization();
-    return kOk;
-  });
+  return guard(component, "fmi2ExitInitializationMode",
+               [](Component& c) { return warned(c, c.fmu->exit_initialization()); });
 }
 
 DREV_FMI int fmi2Terminate(void* component) {
@@ -130,12 +128,7 @@ DREV_FMI int fmi2Reset(void* component) {
 }
 
 DREV_FMI int fmi2DoStep(void* component, double t, double h, int /*no_set_before*/) {
-  return guard(component, "fmi2DoStep", [&](Component& c) {
-    const std::string warning = c.fmu->step(t, h).warning;
-    if (warning.empty()) return kOk;
-    c.log(kWarning, "logStatusWarning", warning);
-    return kWarning;
-  });
+  return guard(component, "fmi2DoStep", [&](Component& c) { return warned(c, c.fmu->step(t, h).warning); });
 }
 
 DREV_FMI int fmi2GetReal(void* component, const unsigned* references, std::size_t count, double* values) {

@@ -71,9 +71,9 @@ DREV_FMI int fmi3EnterInitializationMode(Instance instance, bool tolerance_given
 
 DREV_FMI int fmi3ExitInitializationMode(Instance instance) {
   return guard(instance, "fmi3ExitInitializationMode", [](Component& c) {
-    c.fmu->exit_initialization();
+    const std::string warning = c.fmu->exit_initialization();
     c.in_event = c.uses_events;
-    return kOk;
+    return warned(c, warning);
   });
 }
 
@@ -108,9 +108,7 @@ DREV_FMI int fmi3DoStep(Instance instance, double t, double h, bool /*no_set_bef
     if (terminate != nullptr) *terminate = false;
     if (early != nullptr) *early = stepped.at_change;
     if (last != nullptr) *last = c.fmu->state().state.t;
-    if (stepped.warning.empty()) return kOk;
-    c.log(kWarning, "logStatusWarning", stepped.warning);
-    return kWarning;
+    return warned(c, stepped.warning);
   });
 }
 

@@ -98,6 +98,12 @@ Status guard(void* pointer, const char* call, const std::function<Status(Compone
   return kError;
 }
 
+Status warned(Component& component, const std::string& warning) {
+  if (warning.empty()) return kOk;
+  component.log(kWarning, "logStatusWarning", warning);
+  return kWarning;
+}
+
 Status get_state(Component& component, void** state) {
   check_pointer(state);
   keep(component, component.fmu->state(), state);

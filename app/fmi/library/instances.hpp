@@ -44,6 +44,9 @@ void remove_component(void* pointer);
 /// component.
 Status guard(void* pointer, const char* call, const std::function<Status(Component&)>& body);
 
+/// kOk without a warning; else logs it.
+Status warned(Component& component, const std::string& warning);
+
 /// Getting and setting of values and of states, which are the same in both versions.
 Status get_state(Component& component, void** state);
 Status set_state(Component& component, void* state);

@@ -66,14 +66,23 @@ function showFigures() {
       ]),
     ),
   );
-  if (!result.failures.length) return;
-  byId("figures").append(
-    make("h3", {}, "Failures"),
-    table(
-      ["variant", "status", "parameters", "reason"],
-      result.failures.map((f) => [f.variant, f.status, variedText(f.varied), f.reason]),
-    ),
-  );
+  const warnings = result.warnings || []; // tables of older versions have none
+  if (result.failures.length)
+    byId("figures").append(
+      make("h3", {}, "Failures"),
+      table(
+        ["variant", "status", "parameters", "reason"],
+        result.failures.map((f) => [f.variant, f.status, variedText(f.varied), f.reason]),
+      ),
+    );
+  if (warnings.length)
+    byId("figures").append(
+      make("h3", {}, "Warnings"),
+      table(
+        ["variant", "parameters", "warning"],
+        warnings.map((w) => [w.variant, variedText(w.varied), w.warning]),
+      ),
+    );
 }
 
 /// An SVG with axes from x0 to x1, with the ticks given, and from 0 to y1; paint(x, y, parts) adds its

@@ -187,6 +187,32 @@ TEST_CASE("Each variant that failed has its own status and reason") {
   CHECK(failures[0].at("status") == "energy_error");
 }
 
+TEST_CASE("A variant has the warnings that a run of its own would have") {
+  // A disc rattles in a gap of 20 mrad without ever repeating.
+  const TemporaryFolder folder;
+  const std::string model = (folder / "m.toml").string(), out = (folder / "r").string();
+  std::ofstream(model)
+      << "format = 1\n[parameters]\ngap_rad = { default = 0.02, min = 0, max = 1, meaning = \"gap\" }\n"
+         "[nodes]\nmotor = { constant_speed_rad_per_s = 100 }\ndisc = {}\n[elements]\n"
+         "J = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 2 }\n"
+         "teeth = { type = \"dead_band_coupling\", nodes = [\"motor\", \"disc\"], stiffness_Nm_per_rad = "
+         "2e5, "
+         "gap_rad = \"gap_rad\", damping_Nms_per_rad = 20 }\n"
+         "load = { type = \"engine_order_torque\", node = \"disc\", mean_Nm = 20, twist_feedback = false, "
+         "harmonics = { order = [1], amplitude_Nm = [500] } }\n[run]\nduration_s = 0.1\n";
+  const auto run = drev_command({"run", model, "--start", "periodic", "--vary", "gap_rad=0,0.02", "--table",
+                                 "--out", out, "--report", (folder / "r.html").string()});
+  INFO(run.out << run.err);
+  CHECK(run.exit_code == 0);
+  const Json summary = Json::parse(read_file(folder / "r/variants.json"));
+  CHECK(summary.at("statuses").at("success") == 2);
+  REQUIRE(summary.at("warnings").size() == 1);
+  CHECK(summary.at("warnings")[0].at("variant") == 1);
+  CHECK(contains(summary.at("warnings")[0].at("warning"), "does not start in a periodic steady state"));
+  CHECK(contains(run.out, "variant 1 (gap_rad=0.02): warning: the run does not start"));
+  CHECK(contains(read_file(folder / "r.html"), "does not start in a periodic steady state"));
+}
+
 TEST_CASE("A bad first variant has its place and status among the results, as a later one has") {
   const TemporaryFolder folder;
   const std::string out = (folder / "r").string();
