@@ -28,6 +28,25 @@ std::string digits(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
+struct Function {
+  const char* name;
+  Dual (*at)(const Dual&);
+};
+
+/// Of one number: from Op::sqrt on.
+const Function& function_of(Formula::Op op) {
+  static const Function kAll[] = {{"sqrt", drev::sqrt},
+                                  {"abs", drev::abs},
+                                  {"exp", drev::exp},
+                                  {"log", drev::log},
+                                  {"sin", drev::sin},
+                                  {"cos", drev::cos},
+                                  {"tan", [](const Dual& a) { return drev::sin(a) / drev::cos(a); }},
+                                  {"tanh", drev::tanh},
+                                  {"atan", drev::atan}};
+  return kAll[static_cast<std::size_t>(op) - static_cast<std::size_t>(Formula::Op::sqrt)];
+}
+
 constexpr std::size_t kOnStack = 64;  // steps of a formula that needs no heap
 
 }  // namespace
@@ -84,27 +103,8 @@ Dual Formula::at(std::span<const Dual> variables) const {
       case Op::power:
         r[i] = pow(a(), s.value);
         break;
-      case Op::sqrt:
-        r[i] = drev::sqrt(a());
-        break;
-      case Op::abs:
-        r[i] = drev::abs(a());
-        break;
-      case Op::exp:
-        r[i] = drev::exp(a());
-        break;
-      case Op::log:
-        r[i] = drev::log(a());
-        break;
-      case Op::sin:
-        r[i] = drev::sin(a());
-        break;
-      case Op::cos:
-        r[i] = drev::cos(a());
-        break;
-      case Op::tan:
-        r[i] = drev::sin(a()) / drev::cos(a());
-        break;
+      default:
+        r[i] = function_of(s.op).at(a());
     }
   }
   return r[steps_.size() - 1];
@@ -151,27 +151,8 @@ std::string Formula::text(std::span<const std::string> names) const {
       case Op::power:
         parts[i] = "((" + a + ")^(" + digits(s.value) + "))";
         break;
-      case Op::sqrt:
-        parts[i] = call("sqrt", a);
-        break;
-      case Op::abs:
-        parts[i] = call("abs", a);
-        break;
-      case Op::exp:
-        parts[i] = call("exp", a);
-        break;
-      case Op::log:
-        parts[i] = call("log", a);
-        break;
-      case Op::sin:
-        parts[i] = call("sin", a);
-        break;
-      case Op::cos:
-        parts[i] = call("cos", a);
-        break;
-      case Op::tan:
-        parts[i] = call("tan", a);
-        break;
+      default:
+        parts[i] = call(function_of(s.op).name, a);
     }
   }
   return parts.back();

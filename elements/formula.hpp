@@ -24,13 +24,15 @@ class Formula {
     larger,
     negate,  ///< step a
     power,   ///< step a to the power `value`
-    sqrt,
+    sqrt,    ///< of step a, like all that follow
     abs,
     exp,
     log,
     sin,
     cos,
     tan,
+    tanh,
+    atan,
   };
   struct Step {
     Op op = Op::constant;

@@ -73,6 +73,8 @@ Recorded log(const Recorded& a) { return Recorded::unary(Op::log, a, std::log(a.
 Recorded sin(const Recorded& a) { return Recorded::unary(Op::sin, a, std::sin(a.value)); }
 Recorded cos(const Recorded& a) { return Recorded::unary(Op::cos, a, std::cos(a.value)); }
 Recorded tan(const Recorded& a) { return Recorded::unary(Op::tan, a, std::tan(a.value)); }
+Recorded tanh(const Recorded& a) { return Recorded::unary(Op::tanh, a, std::tanh(a.value)); }
+Recorded atan(const Recorded& a) { return Recorded::unary(Op::atan, a, std::atan(a.value)); }
 Recorded smaller(const Recorded& a, const Recorded& b) {
   return Recorded::binary(Op::smaller, a, b, std::min(a.value, b.value));
 }
@@ -320,8 +322,8 @@ class Parser {
          "parameter" + did_you_mean(name, names));
   }
   Value function(const std::string& name) {
-    static const std::vector<std::string> known{"sqrt", "abs", "exp", "log", "sin",   "cos",
-                                                "tan",  "min", "max", "si",  "plain", "position"};
+    static const std::vector<std::string> known{"sqrt", "abs",  "exp", "log", "sin", "cos",   "tan",
+                                                "tanh", "atan", "min", "max", "si",  "plain", "position"};
     if (std::find(known.begin(), known.end(), name) == known.end())
       fail("calls " + name + "(), which is no function" + did_you_mean(name, known));
     Value a = sum();
@@ -337,7 +339,7 @@ class Parser {
       return a;
     }
     need(')');
-    using std::abs, std::sin, std::cos, std::tan, std::exp, std::log;
+    using std::abs, std::sin, std::cos, std::tan, std::exp, std::log, std::tanh, std::atan;
     if (name == "abs") a.value = abs(a.value);
     if (name == "abs") return a;
     if (name == "si") return in_si(a);
@@ -352,11 +354,13 @@ class Parser {
       a.value = a.value * a.parts.factor;
     else if (!angle)
       fail("takes " + name + " of " + a.unit);
-    return {name == "sin"   ? sin(a.value)
-            : name == "cos" ? cos(a.value)
-            : name == "tan" ? tan(a.value)
-            : name == "exp" ? exp(a.value)
-                            : log(a.value)};
+    return {name == "sin"    ? sin(a.value)
+            : name == "cos"  ? cos(a.value)
+            : name == "tan"  ? tan(a.value)
+            : name == "tanh" ? tanh(a.value)
+            : name == "atan" ? atan(a.value)
+            : name == "exp"  ? exp(a.value)
+                             : log(a.value)};
   }
   /// What must be known before the variables are.
   double known(const Value& value, const std::string& what) const {

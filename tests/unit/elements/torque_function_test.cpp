@@ -33,7 +33,7 @@ TEST_CASE("A torque function's slopes are those of its formula") {
 
 TEST_CASE("A formula by steps: every operation, with its slopes, and as text") {
   using Op = Formula::Op;
-  // sqrt(|w|) + exp(-t) tan(x) / (log(w) + 2)^1.5 - max(x, w) min(sin(x), cos(x))
+  // sqrt(|w|) + exp(-t) tan(x) / (log(w) + 2)^1.5 - max(x, w) min(sin(x), cos(x)) + tanh(x) atan(w)
   const Formula f({{.op = Op::variable, .a = 0},
                    {.op = Op::variable, .a = 1},
                    {.op = Op::variable, .a = 2},
@@ -54,19 +54,23 @@ TEST_CASE("A formula by steps: every operation, with its slopes, and as text") {
                    {.op = Op::smaller, .a = 15, .b = 16},
                    {.op = Op::multiply, .a = 14, .b = 17},
                    {.op = Op::add, .a = 4, .b = 13},
-                   {.op = Op::subtract, .a = 19, .b = 18}});
+                   {.op = Op::subtract, .a = 19, .b = 18},
+                   {.op = Op::tanh, .a = 0},
+                   {.op = Op::atan, .a = 1},
+                   {.op = Op::multiply, .a = 21, .b = 22},
+                   {.op = Op::add, .a = 20, .b = 23}});
   const auto expected = [](double x, double w, double t) {
     return std::sqrt(std::abs(w)) + std::exp(-t) * std::tan(x) / std::pow(std::log(w) + 2.0, 1.5) -
-           std::max(x, w) * std::min(std::sin(x), std::cos(x));
+           std::max(x, w) * std::min(std::sin(x), std::cos(x)) + std::tanh(x) * std::atan(w);
   };
   const double x = 0.4, w = 3.0, t = 0.7, d = 1e-6;
   const Dual r = f.at(std::array{Dual(x, 1.0, 0.0), Dual(w, 0.0, 1.0), Dual(t)});
   CHECK(r.value == Approx(expected(x, w, t)).epsilon(1e-14));
   CHECK(r.by_x == Approx((expected(x + d, w, t) - expected(x - d, w, t)) / (2.0 * d)).epsilon(1e-8));
   CHECK(r.by_x_dot == Approx((expected(x, w + d, t) - expected(x, w - d, t)) / (2.0 * d)).epsilon(1e-8));
-  CHECK(
-      f.text(std::vector<std::string>{"x", "w", "t"}) ==
-      "((sqrt(abs(w)) + (exp((-t)) * tan(x) / ((((log(w) + 2))^(1.5))))) - max(x, w) * min(sin(x), cos(x)))");
+  CHECK(f.text(std::vector<std::string>{"x", "w", "t"}) ==
+        "(((sqrt(abs(w)) + (exp((-t)) * tan(x) / ((((log(w) + 2))^(1.5))))) - max(x, w) * min(sin(x), "
+        "cos(x))) + tanh(x) * atan(w))");
   CHECK(Formula().at({}).value == 0.0);
   CHECK_THROWS_AS(Formula({{.op = Op::add, .a = 0, .b = 1}}), std::invalid_argument);
 }
@@ -100,6 +104,28 @@ TEST_CASE("A torque function in time: run-up against a quadratic law, exact and 
   CHECK(exact.v[0] == Approx(w_inf * std::tanh(0.9 * rate)).epsilon(1e-10));
   CHECK(run_method(system, {.step = 1e-4}, {.t_end = 0.9}, stepped).ok());
   CHECK(stepped.v[0] == Approx(w_inf * std::tanh(0.9 * rate)).epsilon(1e-7));
+}
+
+TEST_CASE("A brake by tanh of the speed comes to rest as its closed form says") {
+  // J w' = -T tanh(w/w_0): sinh(w/w_0) = sinh(w(0)/w_0) exp(-T t/(J w_0))
+  using Op = Formula::Op;
+  Model m("brake");
+  m.add_node("rotor");
+  m.add<Inertia>("J", {"rotor"}, {.inertia = 2.0});
+  m.add<TorqueFunction>("brake", {"rotor"},
+                        {.formula = Formula({{.op = Op::variable, .a = 1},
+                                             {.op = Op::constant, .value = 0.5},
+                                             {.op = Op::divide, .a = 0, .b = 1},
+                                             {.op = Op::tanh, .a = 2},
+                                             {.op = Op::constant, .value = -30.0},
+                                             {.op = Op::multiply, .a = 4, .b = 3}})});
+  m.set_initial("rotor", 0.0, 10.0);
+  const System system = m.build();
+  for (const double t : {0.3, 0.66, 0.8}) {
+    State state = State::initial(system);
+    CHECK(propagate(system, {.tolerance = 1e-11, .t_end = t}, state).ok());
+    CHECK(state.v[0] == Approx(0.5 * std::asinh(std::sinh(20.0) * std::exp(-30.0 * t))).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("Torque function: bad input is named, all at once") {

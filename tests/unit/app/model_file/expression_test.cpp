@@ -84,6 +84,7 @@ TEST_CASE("Powers, roots and functions") {
   CHECK(value("sin(pi/6)") == Approx(0.5).epsilon(1e-15));
   CHECK(value("sin(30*one_deg)") == Approx(0.5).epsilon(1e-15));
   CHECK(value("cos(0) + tan(0) + exp(0) + log(exp(2)) + abs(-3)") == Approx(7.0).epsilon(1e-15));
+  CHECK(value("4*atan(1) + tanh(log(3))") == Approx(3.14159265358979323846 + 0.8).epsilon(1e-15));
   CHECK(value("max(1, n, i) - min(gap_mm, play_mm)") == Approx(8.95).epsilon(1e-15));
 }
 
