@@ -342,7 +342,8 @@ void KinkMoments::find_moments(double end, int degree, std::size_t place_terms) 
 TaylorSeries::RowMoments KinkMoments::find_moments(double end, int degree, int nodes,
                                                    std::size_t place_terms) {
   const int step = whole_lanes(count_);
-  sweep_moments_.resize(idx_of(degree + 1) * idx_of(step));
+  if (const std::size_t size = idx_of(degree + 1) * idx_of(step); sweep_moments_.size() < size)
+    sweep_moments_.resize(size);
   nodes == kSweepRules[0]   ? find_moments<kSweepRules[0]>(end, degree, place_terms)
   : nodes == kSweepRules[1] ? find_moments<kSweepRules[1]>(end, degree, place_terms)
                             : find_moments<kSweepRules[2]>(end, degree, place_terms);

@@ -186,17 +186,16 @@ void StraightLoads::add(const LoadTerm& term, const TaylorSeries& series) {
   value(l, kRatio) = l.ratio;
 }
 
-const double* StraightLoads::rows_of(const Vector& z) {
+void StraightLoads::find_rows(const Vector& z, LaneVector& rows) const {
   const int n = system_.size();
-  std::copy_n(z.data(), n, rows_.data());
-  for (int j = 0; j < system_.loaded_rows(); ++j) rows_[idx(n + j)] = system_.rows().row(j).dot(z);
-  return rows_.data();
+  std::copy_n(z.data(), n, rows.data());
+  for (int j = 0; j < system_.loaded_rows(); ++j) rows[idx(n + j)] = system_.rows().row(j).dot(z);
 }
 
 void StraightLoads::move(const MotionPoint& nominal, const Vector& z, const Vector& v) {
   if (loads_.empty()) return;
-  std::copy_n(rows_of(v), stride_, rates_.data());
-  rows_of(z);
+  find_rows(v, rates_);
+  find_rows(z, rows_);
   for (Layer& layer : layers_)
     run_widest<Move>(stride_, layer.values.data(), nominal.value, nominal.rate,
                      static_cast<const double*>(rows_.data()), static_cast<const double*>(rates_.data()));
@@ -356,10 +355,10 @@ const std::vector<StraightLoads::Near>& StraightLoads::near_knots(const TaylorSe
 double StraightLoads::slope_work(const TaylorSeries& series, const Vector& z) {
   double sum = 0.0;
   if (loads_.empty()) return sum;
-  const double* end = rows_of(z);
+  find_rows(z, rows_);
   for (const Layer& layer : layers_)
     sum += run_widest<SlopeWork>(stride_, static_cast<const double*>(layer.values.data()),
-                                 series.coefficients(0), end);
+                                 series.coefficients(0), static_cast<const double*>(rows_.data()));
   return sum;
 }
 

@@ -66,7 +66,7 @@ class StraightLoads {
   /// Work of the slopes on the motion from that of the series' start to z [J].
   double slope_work(const TaylorSeries& series, const Vector& z);
   /// The motion of each row; loaded rows stand behind the unknowns.
-  const double* rows_of(const Vector& z);
+  void find_rows(const Vector& z, LaneVector& rows) const;
 
  private:
   enum Quantity {

@@ -119,11 +119,6 @@ struct MomentsAtNodes {
 /// large as the motion. most: of w h.
 void TaylorSeries::note_terms(int from, int to, double most, Norm& z_scale, Norm& v_scale) const {
   const double per_time = 1.0 / h_;
-  const auto growth = [most](int k) {
-    double of_term = most;
-    for (int j = 2; j <= k; ++j) of_term = std::max(1.0, of_term * (most * kInverse[idx(j)]));
-    return of_term;
-  };
   for (std::size_t kind = 0; kind < kinds(); ++kind) {
     double largest = 0.0, largest_rate = 0.0;
     for (int k = from; k < to; ++k) {
@@ -132,8 +127,11 @@ void TaylorSeries::note_terms(int from, int to, double most, Norm& z_scale, Norm
     }
     // As nearly always, since no growth is less than 1.
     if (largest <= z_scale[kind] && per_time * largest_rate <= v_scale[kind]) continue;
-    for (int k = from; k < to; ++k) {
-      const double size = sizes_[idx(k)][kind] / growth(k);
+    double growth = most;
+    for (int k = 1; k < to; ++k) {
+      if (k > 1) growth = std::max(1.0, growth * (most * kInverse[idx(k)]));
+      if (k < from) continue;
+      const double size = sizes_[idx(k)][kind] / growth;
       z_scale[kind] = std::max(z_scale[kind], size);
       v_scale[kind] = std::max(v_scale[kind], k * per_time * size);
     }
@@ -141,13 +139,14 @@ void TaylorSeries::note_terms(int from, int to, double most, Norm& z_scale, Norm
 }
 
 int TaylorSeries::terms_within(double part) const {
-  Norm tail{};
-  for (int k = degree_; k > 2; --k)
-    for (std::size_t kind = 0; kind < kinds(); ++kind) {
-      tail[kind] += sizes_[idx(k)][kind];
-      if (tail[kind] > part * z_step_scale_[kind]) return k + 1;
-    }
-  return 3;
+  int terms = 3;
+  for (std::size_t kind = 0; kind < kinds(); ++kind) {
+    double tail = 0.0;
+    const double most = part * z_step_scale_[kind];
+    for (int k = degree_; k >= terms; --k)
+      if ((tail += sizes_[idx(k)][kind]) > most) terms = k + 1;
+  }
+  return terms;
 }
 
 int TaylorSeries::energy_degree() const {
@@ -267,11 +266,15 @@ void TaylorSeries::ranges(double* end, double* size) {
   std::copy_n(step_sums_.data() + idx(kMoments * stride_), stride_, end);
   const int terms = std::min(degree_, kRangeTerms);
   Norm tail{}, slope_tail{};
-  for (int k = terms + 1; k <= degree_; ++k)
-    for (std::size_t kind = 0; kind < kinds(); ++kind) {
-      tail[kind] += sizes_[idx(k)][kind];
-      slope_tail[kind] += k * sizes_[idx(k)][kind];
+  for (std::size_t kind = 0; kind < kinds(); ++kind) {
+    double of_kind = 0.0, slope = 0.0;  // in registers
+    for (int k = terms + 1; k <= degree_; ++k) {
+      of_kind += sizes_[idx(k)][kind];
+      slope += k * sizes_[idx(k)][kind];
     }
+    tail[kind] = of_kind;
+    slope_tail[kind] = slope;
+  }
   sum_sizes(1, terms, sum_weights().range.data(), tail, slope_tail, size);
   for (int i = n_; i < n_ + row_slopes_.size(); ++i)  // loaded rows, of whose terms no sizes are known
     for (int k = terms + 1; k <= degree_; ++k) {
