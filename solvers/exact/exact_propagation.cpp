@@ -61,7 +61,7 @@ class ExactRun final : public StepMotion {
     series_.set_loss_accuracy(kOfImbalance * allowed_imbalance_);
     laws_.add_stiffest(series_);
     fastest_ = series_.bound_rates();
-    length_.start(fastest_, options_.t_end - options_.t_start, options_.tolerance);
+    length_.start(fastest_, options_.t_end - options_.t_start, options_.tolerance, known_.called());
   }
 
   RunSummary run() {

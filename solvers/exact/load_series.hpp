@@ -41,6 +41,8 @@ class LoadSeries {
   /// Adds the right side over a step of h seconds and the loads' tangents.
   void add_to(TaylorSeries& series, double h);
   /// False: no load can differ from what add_to() adds.
+  /// Whether some are known only where they are called.
+  bool called() const { return smooth_.called(); }
   bool projects() const { return !straight_.empty() || !smooth_.empty() || expanded_.knotted(); }
   /// The part of the step for which the loads' polynomials hold, <= 1; and whether, along the series, some angle came
   /// further than was reckoned with: then the step is to be expanded anew.
@@ -64,6 +66,7 @@ class LoadSeries {
     /// Where friction holds: what the projection lacks of a force, relative to the largest force on its row so far. It tells when
     /// a contact lets go, also where nothing moves.
     double torque = 0.0;
+    bool follows = false;  ///< some force follows the motion
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
   /// first: the step is new. held: some friction contact is stuck.

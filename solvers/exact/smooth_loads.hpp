@@ -12,6 +12,7 @@
 #include <drev/core/assembler.hpp>
 #include <drev/core/law/knotted_load.hpp>
 
+#include <algorithm>
 #include <vector>
 
 #include "solvers/exact/tangent_load.hpp"
@@ -26,6 +27,11 @@ class SmoothLoads {
 
   /// A load that states no stretch. expanded: it acts here only where ExpandedLoads does not hold for it.
   void add(const LoadTerm& term, bool expanded) { all_.push_back({&term, expanded}); }
+  /// Whether some of them are known only where they are called: neither as pieces nor by their frequencies.
+  bool called() const {
+    return std::any_of(all_.begin(), all_.end(),
+                       [](const Added& a) { return !a.expanded && a.term->load->frequencies().empty(); });
+  }
   /// Under the nominal motion at hand.
   bool empty() const { return loads_.empty(); }
 
@@ -51,6 +57,10 @@ class SmoothLoads {
   /// kinks: takes the loads that pass knots in the step.
   double project(const TaylorSeries& series, bool first, LegendreProjection& projection,
                  LegendreProjection& kinks);
+  /// Whether some of them follow the motion.
+  bool follows() const {
+    return std::any_of(loads_.begin(), loads_.end(), [](const Place& l) { return l.feedback; });
+  }
   /// Whether loads passed knots in the last pass, and where, as s of the step.
   bool kinked() const { return !places_.empty(); }
   const std::vector<double>& knot_places() const { return places_; }

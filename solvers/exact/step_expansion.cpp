@@ -32,7 +32,9 @@ constexpr int kMostNewton = 10;
 constexpr double kAlong = 1e-9;  // error of points on the way of a swept step, relative to the motion
 // A place is settled, relative to the step; rounding of a time, relative to the time.
 constexpr double kAtChange = 1e-12, kRoundingOfTime = 4e-16;
-constexpr int kMaxPasses = 20;  // passes of projected loads in one step
+constexpr double kPathRounding = 1e-14;  // of the motion: rounding of the forces along two paths
+constexpr int kMostLooks = 4;            // at the forces along a path that had settled
+constexpr int kMaxPasses = 20;           // passes of projected loads in one step
 // Terms of a law's scale, relative to the scale, that its force's range leaves out; how many there are at most.
 constexpr double kOfScale = 1e-9, kMostDropped = TaylorSeries::kMaxDegree;
 // How far a kink's response, between s^3 and s^7 from somewhere on, lies from the cubic through its ends: of y and y' there,
@@ -174,7 +176,8 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
   const double steepest = kSteepest * StepLength::longest_angle(limits.tolerance) / series.rate();
   if (h > steepest) return {steepest};
   if (Attempt made; attempt_sweep(from, laws, h, limits, made)) return made;
-  bool settled = false;
+  bool settled = false, sure = false;
+  int looks = 0;
   const bool projects = known.projects() || !smooth.empty();
   if (projects && h > limits.longest) return {limits.longest, true};
   const double loosest = std::max(share, kLoosest);  // a short run's share of a large tolerance may be more
@@ -193,7 +196,10 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     const double got =
         pass == 0 && expanded_ ? h : series.expand(from.state.z, from.state.v, h, last ? share : tolerance);
     if (got == h && (expanded.turns_back(series) || known.came_further(series))) return {h, true};
-    if (got < h || last) return {.h = got, .longer = tells_length ? fitting() : StepLength::kUnlimited};
+    const auto done = [&] {
+      return Attempt{.h = got, .longer = tells_length ? fitting() : StepLength::kUnlimited};
+    };
+    if (got < h || !projects || (last && sure)) return done();
     if (pass == kMaxPasses) return {0.5 * h};
     const LoadSeries::Pass made = known.project(series, smooth, pass == 0, friction.holds());
     const double of_jump = std::max(share, kJump * limits.tolerance), unseen = made.unseen / of_jump;
@@ -208,10 +214,17 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
       return {h * std::max(0.2, fitting())};
     }
     if (made.cut && h > limits.shortest) return {h * *made.cut, true};
+    const double seen = std::max(share, kPathRounding);
+    if (last && (made.change <= seen || ++looks == kMostLooks)) return done();
     contraction_ = std::max(made.contraction, 1e-300);
     if (pass == 0) first_change_ = made.change;
+    // The factor is that of this pass's path: the next one may lead over a kink from which this one kept clear, so that the
+    // forces are looked at there once more. Kinks are projected, and off inside the step: with them the second pass looks.
+    const bool doubtful = made.follows && made.change > seen;
+    sure = !doubtful || known.kinked();
     // The error of this pass comes back in the next one times the contraction factor.
-    settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kPassesAgree);
+    settled = std::max(made.change, tolerance) * made.contraction <= std::max(share, kPassesAgree) &&
+              !(doubtful && known.kinked() && pass == 0);
     tolerance = std::clamp(0.5 * share / contraction_, share, loosest);
   }
 }

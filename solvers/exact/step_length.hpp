@@ -20,12 +20,14 @@ class StepLength {
     return tolerance < 1e-5 ? 4.0 : tolerance < 5e-3 ? 5.0 : 5.5;
   }
 
-  /// fastest: the rate of the fastest mode [rad/s], or a bound of it; 0: none. duration: of the run [s].
-  void start(double fastest, double duration, double tolerance) {
+  /// fastest: the rate of the fastest mode [rad/s], or a bound of it; 0: none. duration: of the run [s]. called: some forces are
+  /// known only where they are called.
+  void start(double fastest, double duration, double tolerance, bool called = false) {
     const auto step = [&](double angle) {
       return fastest > 0.0 ? std::min(duration, angle / fastest) : duration;
     };
     longest_projected_ = step(kProjectedAngle);
+    if (called && !(fastest > 0.0)) longest_projected_ /= kLeastSteps;
     longest_ = growing_ = step(longest_angle(tolerance));
   }
   /// Of a step with projected forces, and of any, at most [s].
@@ -70,6 +72,9 @@ class StepLength {
  private:
   // Most of a step's length over that of the one before, which was shortened; of the next attempt over a step with overflow.
   static constexpr double kGrowth = 3.0, kRetreat = 1.0 / 16.0;
+  // Where no mode bounds the steps: the nodes of one step over the whole run would see no short pulse, no narrow gate over the
+  // speed.
+  static constexpr double kLeastSteps = 100.0;
   // Two lengths that differ by the rounding of times alone, relative to them.
   static constexpr double kSame = 1e-7;
   static constexpr int kPause = 8, kEnough = 16, kLongestPause = 1024;  // steps

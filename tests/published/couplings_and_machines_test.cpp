@@ -359,7 +359,7 @@ TEST_CASE("Ideal planetary set: modes, nominal speeds, accelerations", "[train_e
   CHECK(recorder.samples(2)[1] == Approx(31.25).epsilon(1e-10));
 }
 
-TEST_CASE("Differential: modes free and with a wheel locked; straight ahead", "[train_elements]") {
+TEST_CASE("Differential: modes free and with a wheel locked, straight ahead", "[train_elements]") {
   const auto differential = [](bool locked) {
     Model m("differential");
     for (const char* node : {"left", "right", "carrier", "wheel_left", "wheel_right"}) m.add_node(node);

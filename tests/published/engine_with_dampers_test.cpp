@@ -83,7 +83,7 @@ double difference_in_time(const System& system, const LinearSweep& sweep) {
 
 }  // namespace
 
-TEST_CASE("Each cylinder misfiring: sweep and settled run in time agree; order 0.5 tells", "[engine][once]") {
+TEST_CASE("Each cylinder misfiring: sweep and settled run in time agree, order 0.5 tells", "[engine][once]") {
   double firing_half_order = 0.0;
   for (int misfiring = 0; misfiring <= 6; ++misfiring) {
     INFO(misfiring);

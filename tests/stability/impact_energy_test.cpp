@@ -96,7 +96,7 @@ TEST_CASE("Average acceleration with coarse steps gains energy without end and n
   CHECK(growth("average_acceleration", 2.502).median > 1000.0);
 }
 
-TEST_CASE("Numerical damping is no cure for coarse impacts; what it gains or loses never passes") {
+TEST_CASE("Numerical damping is no cure for coarse impacts, what it gains or loses never passes") {
   // rho_inf = 0 alone never gains. At omega h = 3 rho_inf = 0.8 gains as average acceleration does.
   for (const double omega_h : {1.0, 3.0, 10.0}) {
     INFO("omega h = " << omega_h);

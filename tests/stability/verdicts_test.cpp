@@ -38,7 +38,7 @@ bool warns(const RunSummary& run, const std::string& of) {
 
 }  // namespace
 
-TEST_CASE("Steps that cannot see a load or the mode that moves say so; steps that can do not", "[verdict]") {
+TEST_CASE("Steps that cannot see a load or the mode that moves say so, steps that can do not", "[verdict]") {
   const System system = two_inertias(8500.0);
   for (const char* method : {"average_acceleration", "generalized_alpha:0.9", "bathe", "sdirk4"}) {
     for (const double step : {0.05, 0.025, 0.01, 0.007, 0.004, 0.002}) {

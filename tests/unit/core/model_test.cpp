@@ -189,7 +189,7 @@ TEST_CASE("Models with nothing to compute") {
   CHECK(only_fault(m, {"unknowns = 0", "every node is prescribed"}));
 }
 
-TEST_CASE("A node without inertia in a free chain; held, or tied by an ideal gear, it needs none") {
+TEST_CASE("A node without inertia in a free chain, held, or tied by an ideal gear, it needs none") {
   Model m = sound();
   const NodeId joint = m.add_node("joint");
   m.add<ShaftSpring>("stub", {"pump", joint}, {.stiffness = 10.0});

@@ -12,7 +12,7 @@
 
 using namespace drev;
 
-TEST_CASE("A coupling without loss is a shaft; with loss it brings its chain") {
+TEST_CASE("A coupling without loss is a shaft, with loss it brings its chain") {
   const ElasticCoupling plain({.material = {.stiffness = 2e5}, .damping = 3.0});
   CHECK(check_element(plain, 2).ok());
   const Terms terms = test::described(plain, 2);

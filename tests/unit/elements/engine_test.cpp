@@ -103,7 +103,7 @@ TEST_CASE("Misfire: compression stays, the mean gas torque is gone, the mass tor
   CHECK(misfires.torque(2, firing + 0.3, w) == Approx(-misfires.torque(2, firing - 0.3, w)));
 }
 
-TEST_CASE("Pressure by load and by peak pressure; tangential pressure") {
+TEST_CASE("Pressure by load and by peak pressure, tangential pressure") {
   GasPressure::Params gas;
   gas.angle = {0.0, 4.0, 8.0, 0.0, 4.0, 8.0};
   gas.pressure = {4e6, 1e5, 1e5, 8e6, 1e5, 1e5};

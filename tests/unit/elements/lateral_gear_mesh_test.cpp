@@ -64,7 +64,7 @@ TEST_CASE(
         Approx(std::sqrt(2.0 * k * kRadius * kRadius / kInertia)).epsilon(1e-9));
 }
 
-TEST_CASE("Gears on bearings: the centres carry the mesh's force; an internal pair's go the same way") {
+TEST_CASE("Gears on bearings: the centres carry the mesh's force, an internal pair's go the same way") {
   for (const bool internal : {false, true}) {
     LateralGearMesh::Params p = closed_mesh();
     p.internal = internal;
@@ -82,7 +82,7 @@ TEST_CASE("Gears on bearings: the centres carry the mesh's force; an internal pa
   }
 }
 
-TEST_CASE("Gears on bearings with backlash rattle alike by exact propagation and by steps; energy closes") {
+TEST_CASE("Gears on bearings with backlash rattle alike by exact propagation and by steps, energy closes") {
   LateralGearMesh::Params p = closed_mesh();
   p.normal_backlash = 60e-6;
   p.damping = 2e3;

@@ -44,7 +44,7 @@ TEST_CASE("A formula over time: its values and slopes to the accuracy, constant 
   CHECK(curve.smallest() >= -1e-10);
 }
 
-TEST_CASE("A formula over time: jumps and kinks at its breakpoints; one that is none is refused") {
+TEST_CASE("A formula over time: jumps and kinks at its breakpoints, one that is none is refused") {
   TimeCurve::Params p{
       .function = [](const Dual& t) { return t.value < 0.5 ? Dual(2.0) : 0.25 * t; }, .from = 0.0, .to = 1.0};
   CHECK(test::contains(curve_findings(p), "none of the breakpoints"));

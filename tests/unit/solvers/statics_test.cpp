@@ -77,7 +77,7 @@ TEST_CASE("A free-free static solve is refused, with the floating parts named") 
   }
 }
 
-TEST_CASE("A load inside a free gap rests on the flank; without a load anything in the gap is in balance") {
+TEST_CASE("A load inside a free gap rests on the flank, without a load anything in the gap is in balance") {
   Model m("gap");
   m.add_node("m");
   m.add<Inertia>("J", {"m"}, {.inertia = 1.0});

@@ -147,7 +147,7 @@ TEST_CASE("SVG chart: logarithmic ticks are powers of ten, with lines between th
   CHECK((p[1].second - p[0].second) / (p[2].second - p[0].second) == Approx(0.5).margin(1e-4));
 }
 
-TEST_CASE("SVG chart: linear ticks are round numbers; large and small ones are scaled") {
+TEST_CASE("SVG chart: linear ticks are round numbers, large and small ones are scaled") {
   const std::string svg = svg_chart({}, {{.name = "", .x = {0, 5}, .y = {-0.3, 0.7}}});
   for (const std::string tick : {">0.0<", ">0.2<", ">-0.2<", ">0.6<", ">5<"}) CHECK(count(svg, tick) >= 1);
   CHECK(count(svg, ">-0.0<") == 0);
@@ -196,7 +196,7 @@ TEST_CASE("SVG chart: bad input is refused, with every finding") {
   CHECK(refused({}, {good}) == 0);
 }
 
-TEST_CASE("Chart: from the eighth series on the markers are open; rings surround points") {
+TEST_CASE("Chart: from the eighth series on the markers are open, rings surround points") {
   std::vector<ChartSeries> series;
   for (int i = 0; i < 8; ++i)
     series.push_back(

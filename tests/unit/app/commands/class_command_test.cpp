@@ -355,7 +355,7 @@ TEST_CASE("An undamped resonance between two speeds is unbounded, and exceeds an
   CHECK_FALSE(contains(drev_command({"sweep", file, "--speeds", "300:100:1500", "--json"}).out, "-0.0,"));
 }
 
-TEST_CASE("The stress beside a limit is of its kind; a section judged by heat alone is judged", "[class]") {
+TEST_CASE("The stress beside a limit is of its kind, a section judged by heat alone is judged", "[class]") {
   const drev::test::TemporaryFolder folder;
   const std::string file =
       two_discs(folder, "rule.toml", ", damping_Nms_per_rad = 5",

@@ -306,7 +306,7 @@ TEST_CASE("Exact propagation: the benchmark's exact curve, and what keeps a mode
   CHECK(contains(both.err, "--step = 1e-5 s, needs a --method with --tolerance"));
 }
 
-TEST_CASE("A tolerance controls the steps of a stepping method; what it took is said") {
+TEST_CASE("A tolerance controls the steps of a stepping method, what it took is said") {
   const std::vector<std::string> words{
       "run", "two_mass_backlash", "--method", "dormand_prince", "--tolerance", "1e-8"};
   const Json truth = Json::parse(drev_command({"run", "two_mass_backlash", "--json"}).out);

@@ -20,7 +20,7 @@ double first_frequency(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("openTorsion's JSON: discs, shafts, gear; what cannot be taken is said", "[import]") {
+TEST_CASE("openTorsion's JSON: discs, shafts, gear, what cannot be taken is said", "[import]") {
   const drev::test::TemporaryFolder folder;
   std::ofstream(folder / "train.json")
       << R"({"structure": [["motor.shaft", "box.pinion"], ["box.wheel", "mill.tail"]],

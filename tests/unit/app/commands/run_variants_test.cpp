@@ -133,7 +133,7 @@ TEST_CASE("A table is the same on any number of threads, and one that is complet
 }
 
 TEST_CASE(
-    "Variants that fail keep their place, their status and a reason; other topologies run by themselves") {
+    "Variants that fail keep their place, their status and a reason, other topologies run by themselves") {
   const TemporaryFolder folder;
   const auto run =
       drev_command({"run", "camshaft", "--vary", "cylinders=6,8,9,11,7", "--set", "drive=held", "--step",

@@ -65,7 +65,7 @@ Ran run_of(const std::string& model, std::vector<std::string> words = {}) {
 }  // namespace
 
 TEST_CASE(
-    "Figures from rest hold the start; from the periodic state, or settled, they are the closed form's") {
+    "Figures from rest hold the start, from the periodic state, or settled, they are the closed form's") {
   const Ran rest = run_of(disc("8", ""));
   REQUIRE(rest.exit_code == 0);
   const double from_rest = rest.json["results"]["max_torque_Nm"];
@@ -343,7 +343,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "Unchecked figures say so; with an accuracy, text and JSON have the accurate ones with their digits") {
+    "Unchecked figures say so, with an accuracy, text and JSON have the accurate ones with their digits") {
   const Ran plain = run_of(disc("8", ""));
   CHECK(plain.json["results"]["checked"] == false);
   CHECK(plain.json["results"]["max_error"].is_null());

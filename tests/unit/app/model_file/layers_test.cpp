@@ -62,7 +62,7 @@ const char* const kInclude = "format = 1\ninclude = \"base.toml\"\n";
 
 }  // namespace
 
-TEST_CASE("A base file brings its name and runs; the file that includes it lays its own over them") {
+TEST_CASE("A base file brings its name and runs, the file that includes it lays its own over them") {
   const test::TemporaryFolder folder;
   ModelCase plain = case_of(folder, kInclude);
   CHECK(plain.model.name() == "base");

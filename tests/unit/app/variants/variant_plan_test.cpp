@@ -100,7 +100,7 @@ TEST_CASE("A Latin hypercube has one value in each of N equal parts of every par
   }
 }
 
-TEST_CASE("Samples have the mean, deviation and correlations asked for; another seed is another sample") {
+TEST_CASE("Samples have the mean, deviation and correlations asked for, another seed is another sample") {
   const std::string kind = GENERATE("random", "lhs", "sobol");
   const VariantPlan plan =
       plan_of({"a=normal(10,2)", "b=normal(0,1)", "c=uniform(0,1)"}, kind + ":4096", {"a,b=0.8", "b,c=-0.5"});

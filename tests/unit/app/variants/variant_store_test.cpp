@@ -73,7 +73,7 @@ TEST_CASE("A reason is cut between two characters of UTF-8") {
   CHECK(reasons_in("").empty());
 }
 
-TEST_CASE("A torn block of a store is not done, wherever it is torn; a torn head is no store") {
+TEST_CASE("A torn block of a store is not done, wherever it is torn, a torn head is no store") {
   const TemporaryFolder folder;
   const std::string at = (folder / "r").string();
   {

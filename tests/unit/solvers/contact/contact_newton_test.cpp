@@ -79,7 +79,7 @@ NewtonResult solve_sparse(const System& system, bool line_search, Vector& u) {
 
 }  // namespace
 
-TEST_CASE("Full Newton cycles for ever on three gaps in a chain; with the exact line search it converges") {
+TEST_CASE("Full Newton cycles for ever on three gaps in a chain, with the exact line search it converges") {
   const System system = build(kCycles);
   Vector u;
   CHECK(solve_on_contacts(system, kCycles, false, u).status == NewtonStatus::too_many_steps);
@@ -123,7 +123,7 @@ TEST_CASE("The exact line search converges on random chains of gaps, from the ga
   CHECK(full_newton_fails < 3000);
 }
 
-TEST_CASE("A damper that jumps in at contact can leave no root; that is said, never accepted") {
+TEST_CASE("A damper that jumps in at contact can leave no root, that is said, never accepted") {
   // a u + [u > b] (k (u - b) + d u) = P with a = k = d = b = 1, P = 1.5: R(1-) = -0.5, R(1+) = +0.5.
   struct Jump {
     ScalarResponse operator()(const ScalarInput& in) const {

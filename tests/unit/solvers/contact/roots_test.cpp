@@ -58,7 +58,7 @@ TEST_CASE("First crossing: none") {
   CHECK(!first_crossing(std::vector<double>{1.0, -4.0, 4.0 + 1e-9}, 1.0));  // dips to 2.5e-10
 }
 
-TEST_CASE("First crossing: a double root is a graze, no crossing; a triple root crosses") {
+TEST_CASE("First crossing: a double root is a graze, no crossing, a triple root crosses") {
   CHECK(!first_crossing(with_roots({0.5, 0.5}), 1.0));
   CHECK(!first_crossing(with_roots({0.25, 0.25, 2.0}), 1.0));
   const auto s = first_crossing(with_roots({0.25, 0.25, 0.75}), 1.0);

@@ -3,6 +3,7 @@
 // against Runge-Kutta, which knows nothing of pieces, knots or projections.
 // Covers solvers/exact/projected_laws.hpp, smooth_loads.hpp and tangent_load.hpp through propagate().
 #include <drev/core/element.hpp>
+#include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/recorder.hpp>
@@ -183,4 +184,71 @@ TEST_CASE("Exact propagation: a cam's slopes on a free mass, the only stiffness 
   runge_kutta(system, 3.0, 1e-5, fine);
   CHECK(std::abs(exact.z[0] - fine.z[0]) < 2e-8 * std::abs(fine.z[0]));
   CHECK(std::abs(exact.v[0] - fine.v[0]) < 2e-8 * std::abs(fine.v[0]));
+}
+
+TEST_CASE("Exact propagation: a brake that acts beyond a speed, which other torques take the train to") {
+  // J w' = A sin(2 pi f t) - c max(0, w - w_1) on the one side of w_1, linear on each: Runge-Kutta of order 4 in steps of 1 us,
+  // of which the kinks take 1e-9 or less. Along its tangent, without the sine, a step sees nothing of the brake.
+  struct Case {
+    double amplitude, frequency, beyond, slope;  // N m, Hz, rad/s, N m s/rad
+  };
+  for (const Case& c : {Case{20.0, 2.0, 10.5, 100.0}, {60.0, 5.0, 11.0, 1000.0}, {1.0, 1.0, 10.01, 10.0}}) {
+    Model m("braked");
+    m.add_node("a");
+    m.add<Inertia>("J", {"a"}, {.inertia = 1.0});
+    m.set_initial("a", 0.0, 10.0);
+    m.add<AppliedTorque>("sine", {"a"}, {.harmonics = {{c.frequency, c.amplitude, -0.5 * kPi}}});
+    m.add<TorqueFunction>("brake", {"a"}, {.torque = [c](const TorqueVariables& x) {
+                            return x.speed > c.beyond ? -c.slope * (x.speed - c.beyond) : Dual(0.0);
+                          }});
+    const System system = m.build();
+    double w = 10.0, angle = 0.0;
+    constexpr int kSteps = 1000000;
+    const double h = 1.0 / kSteps;
+    const auto rate = [&](double t, double speed) {
+      return c.amplitude * std::sin(kTwoPi * c.frequency * t) - c.slope * std::max(0.0, speed - c.beyond);
+    };
+    for (int i = 0; i < kSteps; ++i) {
+      const double t = i * h, a_1 = rate(t, w), a_2 = rate(t + 0.5 * h, w + 0.5 * h * a_1),
+                   a_3 = rate(t + 0.5 * h, w + 0.5 * h * a_2), a_4 = rate(t + h, w + h * a_3);
+      angle += h * (w + h * (a_1 + a_2 + a_3) / 6.0);
+      w += h * (a_1 + 2.0 * a_2 + 2.0 * a_3 + a_4) / 6.0;
+    }
+    for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12}) {
+      State state = State::initial(system);
+      const RunSummary run = propagate(system, {.tolerance = tolerance, .t_end = 1.0}, state);
+      INFO(c.frequency << " Hz at " << tolerance << "\n" << run.brief_report());
+      CHECK(run.ok());
+      CHECK(state.v[0] == Approx(w).epsilon(std::max(10.0 * tolerance, 1e-9)));
+      CHECK(state.z[0] == Approx(angle).epsilon(std::max(10.0 * tolerance, 1e-9)));
+    }
+  }
+}
+
+TEST_CASE(
+    "Exact propagation: a narrow gate over the speed and a pulse in time, where no mode bounds the steps") {
+  // 1 N m on 1 kg m^2, 0.9 N m against it from 55 to 56 rad/s, over ramps of 0.1 rad/s: t = int dw / (1 - 0.9 g).
+  const double inside = 0.8 / 0.1 - 2.0 * std::log(0.1) / 9.0, end = 56.0 + (100.0 - 55.0 - inside);
+  Model gate("gate");
+  gate.add_node("a");
+  gate.add<Inertia>("J", {"a"}, {.inertia = 1.0});
+  gate.add<AppliedTorque>("motor", {"a"}, {.torque = [](double) { return 1.0; }});
+  gate.add<TorqueFunction>("drag", {"a"},
+                           {.torque = [](const TorqueVariables&) { return Dual(-0.9); },
+                            .gate = {.from_speed = 55.0, .to_speed = 56.0, .speed_ramp = 0.1}});
+  Model pulse("pulse");
+  pulse.add_node("a");
+  pulse.add<Inertia>("J", {"a"}, {.inertia = 1.0});
+  pulse.add<TorqueFunction>("pulse", {"a"}, {.torque = [](const TorqueVariables& x) {
+                              return Dual(std::max(0.0, 1.0 - std::abs(x.t - 55.0)));
+                            }});
+  for (const auto& [model, speed] : {std::pair(gate, end), {pulse, 1.0}})
+    for (const double tolerance : {1e-6, 1e-10}) {
+      const System system = model.build();
+      State state = State::initial(system);
+      const RunSummary run = propagate(system, {.tolerance = tolerance, .t_end = 100.0}, state);
+      INFO(model.name() << " at " << tolerance << "\n" << run.brief_report());
+      CHECK(run.ok());
+      CHECK(state.v[0] == Approx(speed).epsilon(std::max(10.0 * tolerance, 1e-9)));
+    }
 }

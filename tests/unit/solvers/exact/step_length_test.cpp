@@ -84,12 +84,12 @@ TEST_CASE("A longer step that is given up is tried again, the later the sooner i
 }
 
 TEST_CASE(
-    "A step that was shortened grows threefold at a time, or as what is projected bears; terms that overflow "
+    "A step that was shortened grows threefold at a time, or as what is projected bears, terms that overflow "
     "leave a sixteenth") {
   StepLength step;
   step.start(1.0, 1e6, 1e-6);
   CHECK(step.attempted(4.0, 1.0) == 1.0);
-  CHECK(step.attempted(0.5, 0.5) == 1.5);
+  CHECK(step.attempted(0.5, 0.5) == 3.0);
   CHECK(step.attempted(1.5, 1.5, 1.2) == 1.5 * 1.2);
   CHECK(step.attempted(1.8, 1.8, 0.9) == 1.8 * 0.9);
   CHECK(step.attempted(3.375, 3.375) == 4.0);

@@ -103,7 +103,7 @@ TEST_CASE("A stretch over the table's end is one, and a narrow flank there is on
 }
 
 TEST_CASE(
-    "On a point of a table the stretch ahead of it is found; a table without a change of slope has no "
+    "On a point of a table the stretch ahead of it is found, a table without a change of slope has no "
     "bounds") {
   const Points points({0.0, 1.0, 2.0}, {0.0, 3.0, 0.0}, 4.0);  // up, down, level
   const TableStretches stretches(points.table(0.5));

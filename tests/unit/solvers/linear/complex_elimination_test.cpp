@@ -86,7 +86,7 @@ TEST_CASE("A pivot lost at an antiresonance does not spoil the solution", "[comp
   check_against_dense(a, {0.0, w}, 1e-12);
 }
 
-TEST_CASE("Sets of eight frequencies are solved as dense matrices are; a lost pivot is told",
+TEST_CASE("Sets of eight frequencies are solved as dense matrices are, a lost pivot is told",
           "[complex_elimination]") {
   constexpr int kSets = 3;
   const Matrices a(6, {{0, 1}, {1, 2}, {2, 0}, {2, 3}, {3, 4}, {4, 1}, {5, 0}, {5, 3}}, 1e-3),

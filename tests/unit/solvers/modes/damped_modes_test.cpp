@@ -158,7 +158,7 @@ TEST_CASE("Closed contacts bring their damping, open ones do not", "[damped_mode
   CHECK(open.real_lambda == std::vector<double>{0.0, 0.0});
 }
 
-TEST_CASE("Undamped frequencies are those of solve_modes; the limit is kept", "[damped_modes]") {
+TEST_CASE("Undamped frequencies are those of solve_modes, the limit is kept", "[damped_modes]") {
   const System system = free_chain(20).build();
   const DampedModeSet damped = solve_damped_modes(system);
   const ModeSet modes = solve_modes(system, {.count = 19});

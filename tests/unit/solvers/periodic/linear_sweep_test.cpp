@@ -276,7 +276,7 @@ TEST_CASE("What a linear sweep cannot take is refused with its places, all at on
   CHECK_THROWS_AS(sweep_linear(system, {.speeds = {20.0}, .balance = "a"}), ModelError);
 }
 
-TEST_CASE("Closed contacts on request; where teeth would separate is said", "[linear_sweep]") {
+TEST_CASE("Closed contacts on request, where teeth would separate is said", "[linear_sweep]") {
   const double stiffness = 1e6, damping = 30.0, radius = 0.2, inertia = 0.1, speed = 50.0;
   const auto with_mean = [&](double mean) {
     Model m("mesh");

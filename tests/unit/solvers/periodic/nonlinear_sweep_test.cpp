@@ -263,7 +263,7 @@ TEST_CASE("Mathieu's equation: multipliers of a stiffness that varies smoothly, 
   }
 }
 
-TEST_CASE("A train of 24 meshes: each is the closed form while its contact holds; of 51 it is refused",
+TEST_CASE("A train of 24 meshes: each is the closed form while its contact holds, of 51 it is refused",
           "[nonlinear_sweep]") {
   // x'' + c x' + k x = mean + error w^2 cos wt, each of a wheel of its own on one pinion.
   const auto train = [](int meshes) {
@@ -338,7 +338,7 @@ TEST_CASE("Where nothing periodic is stable a run's statistics are given", "[non
   CHECK(run.highest[0] > 0.5);
 }
 
-TEST_CASE("Free pair: the same folds; torque that does not balance is told", "[nonlinear_sweep]") {
+TEST_CASE("Free pair: the same folds, torque that does not balance is told", "[nonlinear_sweep]") {
   const Pair pair;
   const std::vector<double> speeds{0.80, 0.84};
   const NonlinearSweep balanced = sweep_nonlinear(pair.free(0.1), {.speeds = speeds, .tolerance = 1e-3});

@@ -148,7 +148,7 @@ TEST_CASE("A cubic spring under the torque that x = A cos w t needs") {
     if (n != 1) CHECK(std::abs(r.amplitudes[0][n]) < 1e-11 * a);
 }
 
-TEST_CASE("A gap that stays closed is a linear mesh with an offset; on both flanks") {
+TEST_CASE("A gap that stays closed is a linear mesh with an offset, on both flanks") {
   const double b = 0.3, c = 0.1, w = 0.5;
   for (const double mean : {1.0, -1.0}) {
     const problems::DrivenGear gear{
@@ -247,7 +247,7 @@ TEST_CASE("A load that follows the motion of a node over several coordinates") {
   CHECK(other.iterations <= full.iterations + 1);
 }
 
-TEST_CASE("At a damped resonance A/(w c); without damping there is no periodic motion to find") {
+TEST_CASE("At a damped resonance A/(w c), without damping there is no periodic motion to find") {
   Driven p{.harmonics = {{1.0, 5.0, 0.0}}, .mean = 0.0, .speed = 20.0};  // k/J = 400
   const PeriodicResponse damped = solve_periodic(p.model().build(), {.channels = {"disc.angle_rad"}});
   REQUIRE(damped.found);

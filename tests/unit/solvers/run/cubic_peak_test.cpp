@@ -22,7 +22,7 @@ TEST_CASE("The extremum of a cubic inside a step is found to rounding") {
   }
 }
 
-TEST_CASE("A parabola's peak is found; rates of one sign have none") {
+TEST_CASE("A parabola's peak is found, rates of one sign have none") {
   const auto peak = cubic_peak(0.0, 1.0, 0.0, -1.0, 2.0);  // y = t - t^2/2
   REQUIRE(peak);
   CHECK(peak->value == Approx(0.5).epsilon(1e-15));

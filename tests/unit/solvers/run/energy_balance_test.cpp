@@ -28,7 +28,7 @@ const LaneMask kAll = ~LaneMask{};
 
 }  // namespace
 
-TEST_CASE("Energy balance: the same for one run and in lanes; a step that is not finite is not entered") {
+TEST_CASE("Energy balance: the same for one run and in lanes, a step that is not finite is not entered") {
   constexpr int kBad = 5;  // lane, in step 100
   Balance<LaneRow> lanes;
   Balance<double> one[kLanes];

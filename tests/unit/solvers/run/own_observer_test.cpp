@@ -61,7 +61,7 @@ TEST_CASE("An observer that is null is refused with its place in the list") {
 }
 
 TEST_CASE(
-    "An observer made for another system is refused with its place in the list; one of a copy is taken") {
+    "An observer made for another system is refused with its place in the list, one of a copy is taken") {
   const auto chain = [](int discs) {
     Model model("chain");
     for (int i = 0; i < discs; ++i) {
