@@ -112,8 +112,9 @@ Eigen::MatrixXd FloquetProduct::rates(const LawBalance& balance, std::size_t pan
 namespace {
 
 constexpr int kOrder = LawBalance::kPoints;
-constexpr int kDegree = 30;       // degree of the Taylor series in a step
-constexpr double kRadians = 4.0;  // largest norm of rates times step [rad]: 4^30 / 30! = 4e-15
+constexpr int kDegree = 30;            // degree of the Taylor series in a step
+constexpr double kRadians = 4.0;       // largest norm of rates times step [rad]: 4^30 / 30! = 4e-15
+constexpr int kMostPanelSteps = 4096;  // in a panel
 using Polynomials =
     Eigen::Matrix<double, kOrder, 3>;  // over a panel from -1 to 1, or over a step from 0 to 1
 
@@ -141,6 +142,7 @@ Polynomials shifted(Polynomials p, double a, double b) {
 /// each.
 struct VaryingLaw {
   Vector q;
+  double reach = 0.0, angle_reach = 0.0;                                 // sums of |coefficients| of its rows
   Polynomials slopes = Polynomials::Zero(), here = Polynomials::Zero();  // over panel, over step
   std::array<Eigen::MatrixXd, 3> last;
 };
@@ -155,35 +157,46 @@ Eigen::MatrixXd FloquetProduct::varying_turn(const LawBalance& balance, std::siz
   std::vector<Varying> varying;
   const Eigen::MatrixXd rates = this->rates(balance, panel, &varying);
   const Eigen::MatrixXd lower = rates.bottomRows(n).transpose();
-  double stiff = rates.bottomLeftCorner(n, n).cwiseAbs().rowwise().sum().maxCoeff(),
-         drag = rates.bottomRightCorner(n, n).cwiseAbs().rowwise().sum().maxCoeff();
+  const double stiff = rates.bottomLeftCorner(n, n).cwiseAbs().rowwise().sum().maxCoeff(),
+               drag = rates.bottomRightCorner(n, n).cwiseAbs().rowwise().sum().maxCoeff();
   std::vector<VaryingLaw> laws;
   for (const Varying& one : varying) {
     VaryingLaw& law = laws.emplace_back();
     law.q = Vector::Zero(n);
-    double reach = 0.0, angle_reach = 0.0;
     for (const drev::Entry& a : one.term->row) {
       law.q += a.coeff * inverse_.col(a.index);
-      reach += std::abs(a.coeff);
+      law.reach += std::abs(a.coeff);
     }
-    for (const drev::Entry& a : one.term->angle_row) angle_reach += std::abs(a.coeff);
-    const double size = law.q.cwiseAbs().maxCoeff();
-    stiff += size / w_ *
-             (reach * one.slopes.col(0).cwiseAbs().maxCoeff() +
-              angle_reach * one.slopes.col(2).cwiseAbs().maxCoeff());
-    drag += size * reach * one.slopes.col(1).cwiseAbs().maxCoeff();
+    for (const drev::Entry& a : one.term->angle_row) law.angle_reach += std::abs(a.coeff);
     law.slopes = coefficients_of_points() * one.slopes;
     law.last.fill(Eigen::MatrixXd::Zero(rows, kOrder));
   }
-  const int steps =
-      std::max(1, static_cast<int>(std::ceil((std::sqrt(stiff * w_) + drag) * lasts / kRadians)));
-  const double h = lasts / steps;
   const double sign = balance.direction();
+  const auto here = [&](const VaryingLaw& law, int step, int steps) {
+    return shifted(law.slopes, sign * (-1.0 + 2.0 * step / steps), sign * 2.0 / steps);
+  };
+  // Norm of the rates times the step, of the slopes' polynomials by the sum of their terms in the step.
+  const auto radians = [&](int step, int steps) {
+    double k = stiff, c = drag;
+    for (const VaryingLaw& law : laws) {
+      const Eigen::RowVector3d sum = here(law, step, steps).cwiseAbs().colwise().sum();
+      const double size = law.q.cwiseAbs().maxCoeff();
+      k += size / w_ * (law.reach * sum[0] + law.angle_reach * sum[2]);
+      c += size * law.reach * sum[1];
+    }
+    return (std::sqrt(k * w_) + c) * lasts / steps;
+  };
+  int steps = 1;
+  for (int s = 0; s < steps && steps < kMostPanelSteps;)
+    if (radians(s, steps) <= kRadians)
+      ++s;
+    else
+      steps += 1 + steps / 4, s = 0;
+  const double h = lasts / steps;
   Eigen::MatrixXd sum = Eigen::MatrixXd::Identity(rows, rows), term, next(rows, rows);
   Vector force(rows);
   for (int s = 0; s < steps; ++s) {
-    for (VaryingLaw& law : laws)
-      law.here = shifted(law.slopes, sign * (-1.0 + 2.0 * s / steps), sign * 2.0 / steps);
+    for (VaryingLaw& law : laws) law.here = here(law, s, steps);
     term = sum;
     for (int m = 0; m < kDegree; ++m) {
       next.leftCols(n) = w_ * term.rightCols(n);
@@ -226,20 +239,38 @@ FloquetMultipliers FloquetProduct::multipliers(const LawBalance& balance, double
   };
   Eigen::MatrixXd product = Eigen::MatrixXd::Identity(2 * n, 2 * n);
   const bool forward = balance.direction() > 0.0;
+  const auto jump_at = [&](std::size_t panel) {
+    for (const LawBalance::Jump& jump : balance.jumps())
+      if (jump.panel == panel) return true;
+    return false;
+  };
+  // Where x crosses a jump of a force, dz' changes by -M^-1 b [y]/|x'| b' dz.
+  const auto pass_jumps = [&](std::size_t panel) {
+    for (const LawBalance::Jump& jump : balance.jumps()) {
+      if (jump.panel != panel) continue;
+      const auto& row = balance.terms()[jump.term].row;
+      Eigen::RowVectorXd x = Eigen::RowVectorXd::Zero(2 * n);
+      for (const drev::Entry& e : row) x += e.coeff * product.row(e.index);
+      for (const drev::Entry& e : row)
+        product.bottomRows(n) -= (jump.impulse / w_ * e.coeff) * inverse_.col(e.index) * x;
+    }
+  };
   for (std::size_t i = 0; i < panels.size();) {
     const std::size_t first = forward ? i : panels.size() - 1 - i;
     double length = panels[first].to - panels[first].from;
     std::size_t next = i + 1;
     for (; next < panels.size(); ++next) {
       const std::size_t p = forward ? next : panels.size() - 1 - next;
-      if (!same(first, p)) break;
+      if (!same(first, p) || jump_at(forward ? p : p + 1)) break;
       length += panels[p].to - panels[p].from;
     }
     i = next;
     const double lasts = length * time;
+    if (forward) pass_jumps(first);
     product = (panels[first].constant ? exponential(rates(balance, first, nullptr) * lasts)
                                       : varying_turn(balance, first, lasts)) *
               product;
+    if (!forward) pass_jumps(panels.size() - i);
   }
   FloquetMultipliers out;
   const GeneralEigen all = general_eigen(product);

@@ -9,6 +9,11 @@
 /// dz') in a step follows from the equation degree by degree (Cauchy products; A. Griewank, A. Walther,
 /// Evaluating Derivatives, SIAM, 2008, chapter 13).
 ///
+/// Where the slopes of a law jump but its force does not, (dz, dz') is continuous. Where x crosses a jump [y] of
+/// the force itself, dz' changes by -M^-1 b [y]/|x'| b' dz (saltation matrix; R. I. Leine, H. Nijmeijer,
+/// Dynamics and Bifurcations of Non-Smooth Mechanical Systems, Springer, 2004, chapter 7). A force that jumps
+/// at a bound in x' (dry friction, which sweeps refuse) is not treated.
+///
 /// Growth rate of the free motion of a gear train whose meshes are always in contact and whose stiffness
 /// jumps with the mesh phase: M z'' + C z' + (K + sum_j k_j(t) b_j b_j') z = 0, where all k_j have a common
 /// period T and are constant in each of its `pieces` equal parts.

@@ -26,6 +26,23 @@ bool same_row(const std::vector<Entry>& a, const std::vector<Entry>& b) {
                     [](const Entry& x, const Entry& y) { return x.index == y.index && x.coeff == y.coeff; });
 }
 
+/// Where slopes of a law may jump: its kinks, and each bound of its pieces that depends on x' once, with b_v > 0.
+std::vector<LawBound> bounds_of(const ScalarForce& force) {
+  std::vector<LawBound> bounds;
+  for (const double kink : force.kinks()) bounds.push_back({-kink, 1.0, 0.0});
+  for (const LawPiece& piece : force.pieces())
+    for (const LawBound& b : piece.bounds) {
+      if (b.b_v == 0.0) continue;
+      const double sign = b.b_v > 0.0 ? 1.0 : -1.0;
+      const LawBound one{sign * b.a, sign * b.b_x, sign * b.b_v};
+      if (std::none_of(bounds.begin(), bounds.end(), [&](const LawBound& o) {
+            return o.a == one.a && o.b_x == one.b_x && o.b_v == one.b_v;
+          }))
+        bounds.push_back(one);
+    }
+  return bounds;
+}
+
 }  // namespace
 
 LawBalance::LawBalance(const System& system, double turns, const std::string& balance,
@@ -68,8 +85,7 @@ void LawBalance::find_terms(std::vector<Finding>& findings) {
     term.x = input(law.z);
     term.stiffness = law.force->closed_stiffness();
     term.gap = law.force->gap();
-    const auto kinks = law.force->kinks();
-    term.kinks.assign(kinks.begin(), kinks.end());
+    term.bounds = bounds_of(*law.force);
     if (law.phase_node >= 0 && law.varies) {
       term.angle_row = system_.row_of(law.phase_node);
       if (!term.angle_row.empty()) term.angle = input(term.angle_row);

@@ -11,7 +11,7 @@
 /// again, so that no harmonic meets an undamped resonance of the mesh.
 ///
 /// Y_n is Galerkin's integral 1/pi int y exp(-i n psi) dpsi, by the 8-point Gauss rule over panels that end
-/// where a law has a kink or a jump. It is free of aliasing, and errors of the low harmonics decrease as H^-4
+/// where a law has a kink or a jump, and where its next piece takes over (bounds in x and x'). It is free of aliasing, and errors of the low harmonics decrease as H^-4
 /// where forces have kinks and as H^-3 where they jump (with sampling as N^-2 and N^-1). The tangent comes
 /// from the same integrals of the slopes of the laws.
 ///
@@ -83,10 +83,17 @@ class LawBalance {
     std::vector<Entry> row;        ///< row of x, and of the force, over the unknowns
     std::vector<Entry> angle_row;  ///< row of the deviation of the node that the term follows
     double stiffness = 0.0;        ///< closed stiffness that S contains [unit of force per unit of x]
-    std::vector<double> kinks;
+    std::vector<LawBound> bounds;  ///< where its slopes may jump: kinks, and bounds of pieces that follow x'
     std::optional<Gap> gap;
   };
   const std::vector<Term>& terms() const { return terms_; }
+  /// A place at which x crosses a kink of a term and the force jumps there by [y] towards growing x.
+  struct Jump {
+    std::size_t term = 0, panel = 0;  ///< it lies where this panel begins
+    double psi = 0.0, impulse = 0.0;  ///< impulse: [y]/|x'|, integral of dy/dx over time
+  };
+  /// The jumps in the motion at which residual() was last called.
+  const std::vector<Jump>& jumps() const { return jumps_; }
   /// Whether no law with a gap leaves its flank in the motion at which residual() was last called.
   bool closed() const { return closed_; }
 
@@ -120,10 +127,16 @@ class LawBalance {
   Eigen::MatrixXcd offset_lines() const;
   void find_terms(std::vector<Finding>& findings);
   bool set_speed(double speed);
-  ScalarResponse respond(const Term& term, double x, double rate, double angle, double speed,
-                         double psi) const;
-  void find_panels(const Vector& x, double speed);
-  void add_kinks(const Vector& x, double speed, std::vector<double>& cuts) const;
+  ScalarInput law_input(const Term& term, Value x, double angle, double speed, double psi) const;
+  ScalarResponse respond(const Term& term, Value x, double angle, double speed, double psi) const;
+  double angle_of(const Term& term, const Vector& x, double speed, double psi) const {
+    return term.angle < 0 ? 0.0 : value(x, term.angle, speed, psi).x;
+  }
+  void find_panels(const Vector& x, double speed, const Eigen::MatrixXd& values,
+                   const Eigen::MatrixXd& rates);
+  void add_bounds(const Vector& x, double speed, const Eigen::MatrixXd& values, const Eigen::MatrixXd& rates,
+                  std::vector<double>& cuts);
+  void add_jump(std::size_t term, double kink, const Vector& x, double speed, double psi);
   void add_knots(const Vector& x, double speed, std::vector<double>& cuts) const;
   void known_knots();
   void find_forces(const Vector& x, double speed);
@@ -150,6 +163,7 @@ class LawBalance {
   std::vector<Eigen::MatrixXcd> compliance_;
   // Results at the point at which residual() was last called.
   std::vector<Panel> panels_;
+  std::vector<Jump> jumps_;
   std::vector<Slopes> slopes_;
   Eigen::MatrixXcd forces_;  // terms x (H + 1), without the closed stiffness
   Vector heat_, left_over_;

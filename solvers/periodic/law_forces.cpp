@@ -47,22 +47,26 @@ LawBalance::Value LawBalance::value(const Vector& x, int input, double speed, do
   return {sum.real(), direction_ * speed / turns_ * rate.real()};
 }
 
-ScalarResponse LawBalance::respond(const Term& term, double x, double rate, double angle, double speed,
-                                   double psi) const {
+/// What a law sees where its input is x and its node deviates by `angle`.
+ScalarInput LawBalance::law_input(const Term& term, Value x, double angle, double speed, double psi) const {
   const double phi = turns_ * psi, w = direction_ * speed;
-  if (term.law != nullptr) {
-    ScalarInput in{.x = x, .x_dot = rate, .t = phi / w};
-    if (term.law->phase_node >= 0) {
-      const double ratio = system_.ratio(term.law->phase_node);
-      const Offset offset = term.law->force->offset(ratio * phi);
-      in.x -= offset.e;
-      in.x_dot -= offset.de_dangle * ratio * w;
-      in.angle = ratio * phi + angle;
-    }
-    return term.law->force->evaluate(in);
+  ScalarInput in{.x = x.x, .x_dot = x.rate, .t = phi / w};
+  if (term.law->phase_node >= 0) {
+    const double ratio = system_.ratio(term.law->phase_node);
+    const Offset offset = term.law->force->offset(ratio * phi);
+    in.x -= offset.e;
+    in.x_dot -= offset.de_dangle * ratio * w;
+    in.angle = ratio * phi + angle;
   }
+  return in;
+}
+
+ScalarResponse LawBalance::respond(const Term& term, Value x, double angle, double speed, double psi) const {
+  if (term.law != nullptr) return term.law->force->evaluate(law_input(term, x, angle, speed, psi));
+  const double phi = turns_ * psi, w = direction_ * speed;
   const double ratio = system_.ratio(term.load->node);
-  const LoadInput in{.t = phi / w, .nominal_angle = ratio * phi, .deviation = x, .speed = ratio * w + rate};
+  const LoadInput in{
+      .t = phi / w, .nominal_angle = ratio * phi, .deviation = x.x, .speed = ratio * w + x.rate};
   LoadInput rest = in;
   rest.deviation = 0.0;
   rest.speed = ratio * w;
@@ -73,36 +77,52 @@ ScalarResponse LawBalance::respond(const Term& term, double x, double rate, doub
 }
 
 ScalarResponse LawBalance::respond(const Term& term, const Vector& x, double speed, double psi) const {
-  const Value here = value(x, term.x, speed, psi);
-  return respond(term, here.x, here.rate, term.angle < 0 ? 0.0 : value(x, term.angle, speed, psi).x, speed,
-                 psi);
+  return respond(term, value(x, term.x, speed, psi), angle_of(term, x, speed, psi), speed, psi);
 }
 
-void LawBalance::add_kinks(const Vector& x, double speed, std::vector<double>& cuts) const {
-  const Eigen::Index points = table_.rows(), block = 2 * harmonics_ + 1;
-  for (const Term& term : terms_) {
-    if (term.kinks.empty()) continue;
-    const auto offset = [&](double psi) { return this->offset(term, psi); };
-    Vector values = table_ * x.segment(term.x * block, block);
-    std::vector<double> at(static_cast<std::size_t>(points));
-    for (Eigen::Index i = 0; i < points; ++i) {
-      at[static_cast<std::size_t>(i)] = std::atan2(-table_(i, 2), table_(i, 1));
-      if (at[static_cast<std::size_t>(i)] < 0.0) at[static_cast<std::size_t>(i)] += kTwoPi;
-      values[i] -= offset(at[static_cast<std::size_t>(i)]);
+/// Adds the places psi at which a term meets one of its bounds; values, rates: of the inputs at the points of
+/// equal panels.
+void LawBalance::add_bounds(const Vector& x, double speed, const Eigen::MatrixXd& values,
+                            const Eigen::MatrixXd& rates, std::vector<double>& cuts) {
+  const auto points = static_cast<std::size_t>(table_.rows());
+  std::vector<double> at(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    at[i] = std::atan2(-table_(row, 2), table_(row, 1));
+    if (at[i] < 0.0) at[i] += kTwoPi;
+  }
+  std::vector<ScalarInput> inputs(points);
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    const Term& term = terms_[t];
+    if (term.bounds.empty()) continue;
+    const bool scaled = term.law->varies && term.bounds.back().b_v != 0.0;
+    // What Y of the pieces sees: the law is s Y(x, x'/s).
+    const auto input = [&](Value here, double angle, double psi) {
+      ScalarInput in = law_input(term, here, angle, speed, psi);
+      if (scaled) in.x_dot /= term.law->force->pieces_scale(in.angle);
+      return in;
+    };
+    for (std::size_t i = 0; i < points; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      inputs[i] = input({values(row, term.x), rates(row, term.x)},
+                        scaled && term.angle >= 0 ? values(row, term.angle) : 0.0, at[i]);
     }
-    for (const double kink : term.kinks)
-      for (Eigen::Index i = 0; i < points; ++i) {
-        const Eigen::Index next = i + 1 < points ? i + 1 : 0;
-        double f = values[i] - kink, g = values[next] - kink;
+    for (const LawBound& bound : term.bounds)
+      for (std::size_t i = 0; i < points; ++i) {
+        const std::size_t next = i + 1 < points ? i + 1 : 0;
+        double f = bound.value(inputs[i].x, inputs[i].x_dot),
+               g = bound.value(inputs[next].x, inputs[next].x_dot);
         if ((f < 0.0) == (g < 0.0)) continue;
         // Illinois method between the two points.
-        double low = at[static_cast<std::size_t>(i)], high = at[static_cast<std::size_t>(next)];
+        double low = at[i], high = at[next];
         if (high < low) high += kTwoPi;
         double root = low;
         for (int k = 0, side = 0; k < 60; ++k) {
           const double last = root;
           root = (low * g - high * f) / (g - f);
-          const double h = value(x, term.x, speed, root).x - offset(root) - kink;
+          const ScalarInput in =
+              input(value(x, term.x, speed, root), scaled ? angle_of(term, x, speed, root) : 0.0, root);
+          const double h = bound.value(in.x, in.x_dot);
           if (h == 0.0 || std::abs(root - last) < 1e-15) break;
           if ((h < 0.0) == (g < 0.0)) {
             high = root, g = h;
@@ -114,9 +134,34 @@ void LawBalance::add_kinks(const Vector& x, double speed, std::vector<double>& c
             side = -1;
           }
         }
-        cuts.push_back(root < kTwoPi ? root : root - kTwoPi);
+        if (root >= kTwoPi) root -= kTwoPi;
+        cuts.push_back(root);
+        if (bound.in_x_alone()) add_jump(t, bound.kink(), x, speed, root);
       }
   }
+}
+
+/// Adds the jump of a term's force at psi, where x crosses a kink, if there is one.
+void LawBalance::add_jump(std::size_t term, double kink, const Vector& x, double speed, double psi) {
+  constexpr double kBeside = 1e-9;        // distance from the kink over its value, at which the law is called
+  constexpr double kJumpRounding = 1e-9;  // jump of the force relative to its terms that is none
+  const Term& of = terms_[term];
+  const Value here = value(x, of.x, speed, psi);
+  const double angle = angle_of(of, x, speed, psi);
+  ScalarInput in = law_input(of, here, angle, speed, psi);
+  const double rate = std::abs(in.x_dot);
+  const double beside = kBeside * std::max(std::abs(kink), rate * turns_ / speed);
+  // The force at the kink, by its slope there, from either side.
+  const auto from_side = [&](double side, double& size) {
+    in.x = kink + side * beside;
+    const ScalarResponse r = of.law->force->evaluate(in);
+    size += std::abs(r.y) + std::abs(r.dy_dx) * (std::abs(kink) + beside);
+    return r.y - side * beside * r.dy_dx;
+  };
+  double size = 0.0;
+  const double jump = from_side(1.0, size) - from_side(-1.0, size);
+  if (std::abs(jump) > kJumpRounding * size && rate > 0.0)
+    jumps_.push_back({.term = term, .psi = psi, .impulse = jump / rate});
 }
 
 void LawBalance::add_knots(const Vector& x, double speed, std::vector<double>& cuts) const {
@@ -126,9 +171,7 @@ void LawBalance::add_knots(const Vector& x, double speed, std::vector<double>& c
     const double ratio = system_.ratio(term.law->phase_node) * turns_;
     if (ratio == 0.0) continue;
     const double direction = ratio > 0.0 ? 1.0 : -1.0;
-    const auto deviation = [&](double psi) {
-      return term.angle < 0 ? 0.0 : value(x, term.angle, speed, psi).x;
-    };
+    const auto deviation = [&](double psi) { return angle_of(term, x, speed, psi); };
     double angle = deviation(0.0);
     while (true) {
       const auto knot = term.law->force->next_knot(angle, direction);
@@ -147,9 +190,11 @@ void LawBalance::add_knots(const Vector& x, double speed, std::vector<double>& c
   }
 }
 
-void LawBalance::find_panels(const Vector& x, double speed) {
+void LawBalance::find_panels(const Vector& x, double speed, const Eigen::MatrixXd& values,
+                             const Eigen::MatrixXd& rates) {
   std::vector<double> cuts;
-  add_kinks(x, speed, cuts);
+  jumps_.clear();
+  add_bounds(x, speed, values, rates, cuts);
   add_knots(x, speed, cuts);
   std::sort(cuts.begin(), cuts.end());
   constexpr double kSliver = 1e-13;
@@ -164,6 +209,11 @@ void LawBalance::find_panels(const Vector& x, double speed) {
       from = cuts[next];
     }
     panels_.push_back({from, end});
+  }
+  for (Jump& jump : jumps_) {  // one at the end of the cycle is at its beginning
+    const auto begins = std::find_if(panels_.begin(), panels_.end(),
+                                     [&](const Panel& p) { return p.from >= jump.psi - 2.0 * kSliver; });
+    jump.panel = begins == panels_.end() ? 0 : static_cast<std::size_t>(begins - panels_.begin());
   }
 }
 
@@ -182,7 +232,7 @@ void LawBalance::find_forces(const Vector& x, double speed) {
     values.col(i) = table_ * x.segment(i * block, block);
     rates.col(i) = table_ * rate;
   }
-  find_panels(x, speed);
+  find_panels(x, speed, values, rates);
   slopes_.resize(panels_.size() * kPoints * terms_.size());
   forces_.setZero(count, harmonics_ + 1);
   heat_.setZero(count);
@@ -215,9 +265,9 @@ void LawBalance::find_forces(const Vector& x, double speed) {
           if (term.angle >= 0) angle = values(row, term.angle);
         } else {
           here = value(x, term.x, speed, psi);
-          if (term.angle >= 0) angle = value(x, term.angle, speed, psi).x;
+          angle = angle_of(term, x, speed, psi);
         }
-        const ScalarResponse r = respond(term, here.x, here.rate, angle, speed, psi);
+        const ScalarResponse r = respond(term, here, angle, speed, psi);
         Slopes& slopes = slopes_[(p * kPoints + idx(g)) * terms_.size() + t];
         slopes = {r.dy_dx, r.dy_dx_dot, term.angle >= 0 ? r.dy_dangle : 0.0};
         panel.constant = panel.constant && slopes == slopes_[p * kPoints * terms_.size() + t];
@@ -297,6 +347,8 @@ void LawBalance::law_slopes_over(std::size_t term, Eigen::MatrixXcd& lines) cons
       add(slopes(p, g, term), psi, half * kGaussWeights[idx(of)], false);
     }
   }
+  for (const Jump& jump : jumps_)
+    if (jump.term == term) add({.x = jump.impulse}, jump.psi, speed_ / turns_, false);
 }
 
 }  // namespace drev

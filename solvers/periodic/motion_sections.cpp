@@ -90,11 +90,15 @@ bool MotionSections::find(LawBalance& balance, const Vector& x, double speed, co
       for (Eigen::Index n = 0; n < z.cols(); ++n) force[n] = balance.force_line(term, x, static_cast<int>(n));
       figures.heat[c] = balance.heat(term);
     } else {
-      const Lines damper = lines_of(section.damper, z).cwiseProduct(rates),
-                  twist = lines_of(section.twist, z).cwiseProduct(rates);
       force = lines_of(section.stiffness, z) + lines_of(section.damping, z).cwiseProduct(rates);
+      // Heat is w/2 Im(T conj x), as of a linear sweep: with a complex stiffness T is the whole torque, which holds
+      // those of the dashpots inside; else that of the damper, so that rounding of the elastic part adds nothing.
+      const Lines lossy = section.frequency_term >= 0
+                              ? force
+                              : Lines(lines_of(section.damper, z).cwiseProduct(rates)),
+                  twist = lines_of(section.twist, z).cwiseProduct(rates);
       look = [&force](double psi) { return sum_at(force, psi); };
-      figures.heat[c] = 0.5 * twist.dot(damper).real();
+      figures.heat[c] = 0.5 * twist.dot(lossy).real();
     }
     figures.mean[c] = force[0].real();
     for (std::size_t k = 0; k < lines.size(); ++k)
