@@ -109,6 +109,7 @@ struct MethodTrial {
 /// A change is made where the chosen method costs more than so many times as much as another: in runs of up to, and of
 /// more than, half a minute.
 inline constexpr double kTooExpensive = 20.0, kTooExpensiveLong = 4.0;
+inline constexpr double kLongRun = 30e9;  ///< half a minute [ns]
 
 /// chosen: by choose_method(), for the same system and duration [s]. progress: returns false to stop trying.
 /// Throws nothing of its own: a method that fails in its trial is no candidate.

@@ -28,7 +28,6 @@ constexpr double kStart = 1e-6;              // of the duration: steps from rest
 constexpr int kSamples = 32;
 constexpr std::size_t kMostChannels = 64;
 constexpr double kAgrees = 10.0 * kControlledTolerance;
-constexpr double kLongRun = 30e9;  // ns: from here on kTooExpensiveLong holds
 constexpr double kAffordable = 2e9, kFirstTrial = 0.2e9, kOtherTrial = 0.5e9;  // ns
 // Measured on gensets, camshafts and chains (ns); kOfUnknown: of a step, energies and peaks of all shafts included.
 constexpr double kOfStep = 8000.0, kOfUnknown = 30.0, kOfProduct = 2.0, kOfLoad = 100.0,

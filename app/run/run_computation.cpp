@@ -236,8 +236,8 @@ void settle_method(RunRequest& request) {
                                         request.model.model_case.duration, [] { return !interrupted(); });
   request.method = trial.choice.method;
   request.method_reason = trial.choice.reason;
-  if (request.any_reduce && request.method.controlled())
-    request.reduce = kPartOfTolerance * request.method.tolerance;
+  if (request.any_reduce && (request.method.controlled() || trial.chosen_ns > kLongRun))
+    request.reduce = kPartOfTolerance * kControlledTolerance;
 }
 
 RunPlan plan_run(const RunRequest& request) {

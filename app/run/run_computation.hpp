@@ -24,8 +24,8 @@ struct RunPlan {
   double time = 0.0;  ///< s, to find it
 };
 RunPlan plan_run(const RunRequest& request);
-/// Where any method is right: takes the one that a trial finds far cheaper (try_methods()), and with controlled steps,
-/// which are what large models are run with, a reduction that adds a tenth of their tolerance.
+/// Where any method is right: takes the one that a trial finds far cheaper (try_methods()), and with controlled steps, or where
+/// the run would take long (kLongRun), a reduction that adds a tenth of the tolerance of controlled steps.
 void settle_method(RunRequest& request);
 /// The whole model, from where it starts.
 inline const System& started_system(const RunRequest& request, const RunPlan& plan) {

@@ -208,7 +208,7 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   for (std::size_t kind = 0; kind < per_reach_.size(); ++kind)
     per_reach_[kind] = h_ / std::min(z_scale[kind] / (0.5 * h_), v_scale[kind]);
   Pass pass;
-  pass.follows = !laws.empty() || smooth_.follows();
+  pass.follows = smooth_.follows();
   pass.contraction = find_kinks(series);
   pass.contraction = std::max(pass.contraction, smooth_.project(series, first, projection_, of_kinks_));
   if (!laws.empty()) {

@@ -66,7 +66,7 @@ class LoadSeries {
     /// Where friction holds: what the projection lacks of a force, relative to the largest force on its row so far. It tells when
     /// a contact lets go, also where nothing moves.
     double torque = 0.0;
-    bool follows = false;  ///< some force follows the motion
+    bool follows = false;  ///< some load that is called follows the motion
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
   /// first: the step is new. held: some friction contact is stuck.
