@@ -198,13 +198,12 @@ class Search {
         if (!(here > kSmallPeak * largest_[c])) continue;
         SweepPeak peak;
         peak.section = static_cast<int>(c), peak.speed = speeds[top.point], peak.half_range = here;
-        peak.at_end = top.at_end;
-        if (!peak.at_end && std::isfinite(here)) {
-          const BracketedMaximum found =
-              bracketed_maximum(top.low, top.start, top.high, kPeakSpeed * top.start,
-                                [&](double speed) { return one(speed, c); });
-          if (found.value >= here) peak.speed = found.at, peak.half_range = found.value;
+        if (std::isfinite(here)) {
+          const BracketedMaximum found = followed_top(top, peak.speed, here, kPeakSpeed * top.start,
+                                                      [&](double speed) { return one(speed, c); });
+          peak.speed = found.at, peak.half_range = found.value;
         }
+        peak.at_end = top.at_end && peak.speed == speeds[top.point];
         peaks.push_back(peak);
       }
       std::stable_sort(peaks.begin(), peaks.end(),
@@ -237,11 +236,11 @@ class Search {
       };
       SweepSection& section = sweep_.sections[c];
       for (const TopBracket& top : tops_of(speeds, values)) {
-        const double here = values[top.point], width = kPeakSpeed * top.start;
-        if (!(here > kSmallHeat * largest) || !std::isfinite(here) || !(top.high > top.low)) continue;
-        if (top.at_end && !(look(top.start) > here)) continue;
-        BracketedMaximum best = bracketed_maximum(top.low, top.start, top.high, width, look);
-        if (!(best.value >= here)) best = {speeds[top.point], here};
+        const double here = values[top.point];
+        if (!(here > kSmallHeat * largest) || !std::isfinite(here)) continue;
+        const BracketedMaximum best =
+            followed_top(top, speeds[top.point], here, kPeakSpeed * top.start, look);
+        if (top.at_end && best.at == speeds[top.point]) continue;  // nothing between the speeds
         if (!(section.heat_peak >= best.value))
           section.heat_peak = best.value, section.heat_peak_speed = best.at;
       }
