@@ -317,7 +317,8 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
   }
   const double duration = model_case.duration;
   const std::string unsettled = plan.start ? plan.start->unsettled() : "";
-  const bool steady = request.start == Start::periodic && plan.start->error <= kSettledPart;
+  const bool steady =
+      request.start == Start::periodic && plan.start->error <= kSettledPart && unsettled.empty();
   result.span = figure_span(request.settle, full, steady, duration, cycle_of(request.model));
   result.span.start = plan.start ? plan.start->how : "from the model's initial conditions";
   add_modes(full, result);
