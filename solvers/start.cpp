@@ -4,6 +4,7 @@
 #include <drev/core/units.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
 #include <drev/solvers/periodic/periodic_response.hpp>
 #include <drev/solvers/start.hpp>
 #include <drev/solvers/statics.hpp>
@@ -136,6 +137,21 @@ FoundStart settle(const System& system, double cycle, const std::string& why, co
   return {system.with_initial(after.z, after.v), how.str(), cycle, error, true};
 }
 
+/// The mode that grows beside a periodic motion of the system at this speed of the reference shaft (0: none turns). None where laws
+/// are nonlinear, or it is not known.
+Growth growth_beside(const System& system, double speed) {
+  if (!system.scalars().empty() || !system.generals().empty()) return {};
+  try {
+    const bool follows = std::any_of(system.loads().begin(), system.loads().end(),
+                                     [](const LoadTerm& term) { return term.load->depends_on_motion(); });
+    if (follows && !(speed > 0.0)) return {};
+    return find_growth(system, follows ? load_damping(system, speed) : Vector());
+  } catch (const ModelError&) {  // a load that has no orders
+  } catch (const SolverError&) {
+  }
+  return {};
+}
+
 FoundStart start_periodic(const System& system, const StartOptions& options) {
   std::vector<double> cycles = cycles_of(system, options);
   std::string reason =
@@ -153,7 +169,9 @@ FoundStart start_periodic(const System& system, const StartOptions& options) {
           << " harmonics";
       how.precision(2);
       how << ", error " << found.error << " of the motion)";
-      return {system.with_initial(found.z, found.v), how.str(), cycle, found.error};
+      FoundStart start{system.with_initial(found.z, found.v), how.str(), cycle, found.error};
+      start.growth = growth_beside(system, constant_speed_of(system, options.duration));
+      return start;
     }
     reason = found.reason;
   }
@@ -180,6 +198,7 @@ std::optional<Start> start_of(const std::string& name) {
 }
 
 std::string FoundStart::unsettled() const {
+  if (growth.rate > 0.0) return "the run starts in a periodic motion that it leaves: " + growth.text();
   if (!by_run || error <= kSettledPart) return {};
   std::ostringstream text;
   text.precision(2);

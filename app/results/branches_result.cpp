@@ -217,6 +217,13 @@ Json branch_object(const NonlinearSweep& sweep, const SweptBranch& branch) {
 
 std::string table_cell(double value) { return std::isfinite(value) ? to_text(value) : ""; }
 
+/// Whether a run does not vibrate, beside the largest value of any of its sections.
+bool at_rest(const SweptRun& run) {
+  constexpr double kAtRest = 1e-9;  // range of a section that is rounding [-]
+  const double largest = std::max(run.highest.cwiseAbs().maxCoeff(), run.lowest.cwiseAbs().maxCoeff());
+  return (run.highest - run.lowest).maxCoeff() <= kAtRest * largest;
+}
+
 std::string excess_sentence(const NonlinearSweep& sweep) {
   const NonlinearSweep::Excess& excess = sweep.excess;
   const std::string turns = short_digits(sweep.turns, kFigureDigits) + " turns";
@@ -262,13 +269,21 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
                       rpm_text(sweep.branches[b].run_speed) + " rpm settled on.");
   double of_runs = -1.0;
   for (const SweptRun& run : sweep.runs)
-    if (run.repeats > 0) of_runs = std::max(of_runs, run.error);
+    if (run.repeats > 0 && !at_rest(run)) of_runs = std::max(of_runs, run.error);
   if (of_runs >= 0.0)
     notes.push_back(
-        "Where a run repeats, its figures are those of a stable periodic motion that takes more "
-        "harmonics than were tried; from one repetition to the next they change by " +
+        "Where a run repeats, its figures are those of a stable periodic motion that harmonic balance did "
+        "not "
+        "find: it takes more harmonics than were tried, or a law stays within its gap throughout, so that "
+        "the mean position there may be any. From one repetition to the next they change by " +
         digits(of_runs, 1) +
         " of their section's largest value at most, with what the decay leaves to come.");
+  std::vector<std::string> resting;
+  for (const SweptRun& run : sweep.runs)
+    if (run.repeats > 0 && at_rest(run)) resting.push_back(rpm_text(run.speed));
+  if (!resting.empty())
+    notes.push_back("Nothing vibrates at " + join(resting) +
+                    " rpm: runs settle on their means, and what they state beside these is rounding.");
   if (!judged) notes.push_back("Stability is not judged with more than 200 unknowns.");
   for (std::size_t b = 0; b < sweep.branches.size(); ++b)
     if (!sweep.branches[b].whole)

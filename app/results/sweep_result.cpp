@@ -175,6 +175,12 @@ void note_bent_laws(const System& system, const LinearSweep& sweep, std::vector<
 
 std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSweep& sweep) {
   std::vector<std::string> notes;
+  if (sweep.growth.rate > 0.0)
+    notes.push_back("The train is unstable: " + sweep.growth.text() +
+                    (std::isnan(sweep.growth_speed)
+                         ? ""
+                         : ", fastest at about " + digits(to_rpm(sweep.growth_speed), 4) + " rpm") +
+                    ". The steady vibration stated solves the equations, but no run settles on it.");
   for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f) {
     LeftOver left{.of = sweep.unbalanced_scale[f]};
     for (std::size_t i = 0; i < request.speeds_rpm.size(); ++i)
@@ -282,6 +288,11 @@ Json sweep_object(const SweepRequest& request, const LinearSweep& sweep) {
   object["peaks"] = std::move(peaks);
   object["criticals"] = std::move(criticals);
   object["criticals_note"] = text_or_null(sweep.modes_note);
+  object["growing_mode"] = sweep.growth.rate > 0.0
+                               ? Json({{"rate_per_s", number(sweep.growth.rate)},
+                                       {"frequency_Hz", number(sweep.growth.frequency_Hz)},
+                                       {"speed_rpm", number(to_rpm(sweep.growth_speed))}})
+                               : Json();
   object["floating_parts"] = std::move(floating);
   object["balance"] = text_or_null(request.options.balance);
   object["input_power_W"] = numbers(sweep.input_power);

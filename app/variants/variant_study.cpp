@@ -224,6 +224,8 @@ VariantStudy::Built VariantStudy::build(const ParameterValues& values) const {
       built.warning = found.unsettled();
       system = std::move(found.system);
     }
+    if (const std::vector<std::string> soft = soft_chain_warnings(system); !soft.empty())
+      built.warning += (built.warning.empty() ? "" : "; ") + join(soft, "; ");
     built.watched = watched_by(model_case, system);
     built.system.emplace(std::move(system));
   } catch (const ModelError& error) {

@@ -29,8 +29,10 @@ class FrequencyStiffness {
   virtual bool follows_frequency() const { return true; }
   virtual bool follows_mean_torque() const { return false; }
   virtual bool follows_amplitude() const { return false; }
-  /// Of its own matrices: mean torque over mean deflection [N m/rad]. Asked where it follows the mean torque.
+  /// Of its own matrices: mean torque over mean deflection [N m/rad].
   virtual double static_stiffness() const { return 0.0; }
+  /// The static stiffness that the element states less that of its matrices [N m/rad]; the frequency domain's means have it.
+  virtual double static_beyond_matrices() const { return 0.0; }
 };
 
 }  // namespace drev

@@ -61,6 +61,23 @@ struct DampedModeSet {
 /// eigensolver does not converge.
 DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions& options = {});
 
+/// A mode that grows: nothing that depends on it reaches a steady state.
+struct Growth {
+  double rate = 0.0;          ///< Re lambda [1/s]; 0: none grows by more than rounding
+  double frequency_Hz = 0.0;  ///< 0: it does not swing
+  /// Takes a mode with this lambda, Im >= 0, if it grows faster.
+  void note(std::complex<double> lambda);
+  std::string text() const;  ///< "a mode at 2.5 Hz grows at 0.3 1/s (Re lambda)"
+};
+
+/// The mode that grows fastest. Of real lambda none counts where a part floats: they are of mean speeds, too.
+Growth fastest_growth(const System& system, const DampedModeSet& modes);
+
+/// The same, contacts closed, `damping` as in DampedModesOptions. Modes are solved for only where the matrices can feed energy in
+/// (K or C not symmetric, or C not positive semidefinite), with 400 unknowns at the most: beyond, none is found. Throws as
+/// solve_damped_modes() does.
+Growth find_growth(const System& system, const Vector& damping);
+
 /// Where the energy of damped modes is, element by element:
 ///
 ///   kinetic   |lambda|^2 x' M_e x / 4      elastic   x' K_e x / 4      dissipated   |lambda|^2 x' C_e x / 2

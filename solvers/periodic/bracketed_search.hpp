@@ -1,6 +1,6 @@
 #pragma once
 /// Searches of a function of one variable: tops_of() brackets its local maxima between points at which it is known, MaximumSearch
-/// and bracketed_maximum() find its largest value between two bounds, IllinoisBracket its root.
+/// and bracketed_maximum() find its largest value between two bounds, followed_top() that in a bracket, IllinoisBracket its root.
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -118,6 +118,17 @@ BracketedMaximum bracketed_maximum(double low, double start, double high, double
   MaximumSearch search(low, start, high, width);
   while (!search.found()) search.take(look(search.next()));
   return search.best();
+}
+
+/// The top in a bracket: the largest value of look(t) that is found, or that of the point itself, `known` at `place`, if none is
+/// larger. At an end, one look just inside tells first whether the function rises from there.
+template <class Look>
+BracketedMaximum followed_top(const TopBracket& top, double place, double known, double width,
+                              const Look& look) {
+  const bool is_top = !(top.high > top.low) || (top.at_end && !(look(top.start) > known));
+  if (is_top) return {place, known};
+  const BracketedMaximum found = bracketed_maximum(top.low, top.start, top.high, width, look);
+  return found.value >= known ? found : BracketedMaximum{place, known};
 }
 
 /// A root of f between two places at which f has different signs.

@@ -48,8 +48,12 @@ LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& o
   assembler_.contact_values({0.0, 0.0, 1.0}, Contact::closed, stiffness_);
   sections_ = find_section_rows(system, options.sections, findings);
   direction_ = reference_direction(system_);
-  if (findings.empty()) mean_.emplace(system_, damping_, stiffness_, options.balance, findings);
   const std::vector<bool> held = find_held();
+  Vector static_stiffness = stiffness_;
+  for (std::size_t i = 0; i < slots_.size(); ++i)
+    static_stiffness[slots_[i]] +=
+        slot_times_[i] * system.frequency_terms()[idx(slot_terms_[i])].stiffness->static_beyond_matrices();
+  if (findings.empty()) mean_.emplace(system_, damping_, static_stiffness, options.balance, findings);
   elimination_.emplace(system.pattern(), held);
   lanes_.emplace(*elimination_);
   rows_.emplace(system_, load_rows_, sections_, held);
@@ -283,6 +287,10 @@ void LinearResponse::find_means(const std::vector<double>& z, Point& point) cons
   for (Eigen::Index s = 0; s < count; ++s) {
     const Section& section = sections_[static_cast<std::size_t>(s)];
     point.mean[s] = product(section.stiffness, z);
+    if (section.frequency_term >= 0) {
+      const FrequencyTerm& term = system_.frequency_terms()[idx(section.frequency_term)];
+      point.mean[s] += term.stiffness->static_beyond_matrices() * product(term.z, z);
+    }
     point.twist_mean[s] = product(section.twist, z);
   }
 }
@@ -330,7 +338,9 @@ void LinearResponse::find_carried_loads(double speed) {
     Vector unbalanced, sums;
     const std::vector<double> z = mean_motion(speed, load_means(speed), unbalanced, sums);
     for (std::size_t t = 0; t < terms.size(); ++t)
-      carried_[t].mean_torque = terms[t].stiffness->static_stiffness() * product(terms[t].z, z);
+      carried_[t].mean_torque =
+          (terms[t].stiffness->static_stiffness() + terms[t].stiffness->static_beyond_matrices()) *
+          product(terms[t].z, z);
   }
   if (!follows_amplitude_) return;
   const auto orders = static_cast<Eigen::Index>(orders_.size()),

@@ -32,6 +32,7 @@
 /// Source: E. J. Nestorides, A Handbook on Torsional Vibration, Cambridge, 1958 (steady state by orders, phase
 /// vector sums).
 #include <drev/core/system.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 
 #include <complex>
 #include <functional>
@@ -127,6 +128,11 @@ struct LinearSweep {
   std::vector<SweepCritical> criticals;  ///< critical speeds, ascending
   SweepModes modes;                      ///< modes, if options.refine is set
   std::string modes_note;                ///< why modes are missing although options.refine is set
+  /// Of these modes, and of real lambda up to 400 unknowns, the one that grows fastest: with a rate > 0 the steady vibration is a
+  /// solution of the equations that the train leaves.
+  Growth growth;
+  /// Speed at which it does [rad/s]; not a number: it grows at any speed alike.
+  double growth_speed = std::numeric_limits<double>::quiet_NaN();
   /// Unbalanced mean torque of each floating part, referred to the reference shaft [N m]: [part][speed].
   std::vector<Vector> unbalanced;
   std::vector<std::string> floating_parts;  ///< name of one node of each floating part

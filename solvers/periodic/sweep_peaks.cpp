@@ -72,8 +72,15 @@ bool damping_follows(const System& system, LinearResponse& response, const std::
          first != load_damping(system, speeds.back());
 }
 
+/// Takes a growth at column number i of the modes, if it is faster.
+void note_growth(const SweepModes& modes, Eigen::Index i, const Growth& here, LinearSweep& sweep) {
+  if (!(here.rate > sweep.growth.rate)) return;
+  sweep.growth = here;
+  if (modes.speeds.size() > 1) sweep.growth_speed = modes.speeds[i];
+}
+
 SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds,
-                        const std::function<void()>& pause) {
+                        const std::function<void()>& pause, LinearSweep& sweep) {
   const bool follows = damping_follows(system, response, speeds);
   const int count = follows ? kModeSpeeds : 1;
   SweepModes modes;
@@ -84,6 +91,7 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
     const double part = count > 1 ? static_cast<double>(i) / (count - 1) : 0.5;
     modes.speeds[i] = speeds.front() + part * (speeds.back() - speeds.front());
     const DampedModeSet set = solve_damped_modes(system, {.damping = load_damping(system, modes.speeds[i])});
+    note_growth(modes, i, fastest_growth(system, set), sweep);
     if (i == 0) {
       shapes = set.shapes;
       modes.lambda.setZero(set.shapes.cols(), count);
@@ -103,7 +111,7 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
 /// iterated to its damped mode (damped_pairs.hpp). Modes that do not converge, or that converge to one
 /// already found, are 0.
 SweepModes follow_pairs(const System& system, LinearResponse& response, const std::vector<double>& speeds,
-                        double highest, const std::function<void()>& pause) {
+                        double highest, const std::function<void()>& pause, LinearSweep& sweep) {
   const bool follows = damping_follows(system, response, speeds);
   const int columns = follows ? kModeSpeeds : 1, all = system.elastic_mode_count();
   ModeSet undamped;
@@ -133,6 +141,9 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
           ((modes.lambda.col(i).head(mode).array() - last[m]).abs() < kSameMode * std::abs(last[m])).any();
       if (!known) modes.lambda(mode, i) = last[m];
     }
+    Growth here;
+    for (const std::complex<double> lambda : modes.lambda.col(i)) here.note(lambda);
+    note_growth(modes, i, here, sweep);
   }
   return modes;
 }
@@ -198,13 +209,12 @@ class Search {
         if (!(here > kSmallPeak * largest_[c])) continue;
         SweepPeak peak;
         peak.section = static_cast<int>(c), peak.speed = speeds[top.point], peak.half_range = here;
-        peak.at_end = top.at_end;
-        if (!peak.at_end && std::isfinite(here)) {
-          const BracketedMaximum found =
-              bracketed_maximum(top.low, top.start, top.high, kPeakSpeed * top.start,
-                                [&](double speed) { return one(speed, c); });
-          if (found.value >= here) peak.speed = found.at, peak.half_range = found.value;
+        if (std::isfinite(here)) {
+          const BracketedMaximum found = followed_top(top, peak.speed, here, kPeakSpeed * top.start,
+                                                      [&](double speed) { return one(speed, c); });
+          peak.speed = found.at, peak.half_range = found.value;
         }
+        peak.at_end = top.at_end && peak.speed == speeds[top.point];
         peaks.push_back(peak);
       }
       std::stable_sort(peaks.begin(), peaks.end(),
@@ -237,11 +247,11 @@ class Search {
       };
       SweepSection& section = sweep_.sections[c];
       for (const TopBracket& top : tops_of(speeds, values)) {
-        const double here = values[top.point], width = kPeakSpeed * top.start;
-        if (!(here > kSmallHeat * largest) || !std::isfinite(here) || !(top.high > top.low)) continue;
-        if (top.at_end && !(look(top.start) > here)) continue;
-        BracketedMaximum best = bracketed_maximum(top.low, top.start, top.high, width, look);
-        if (!(best.value >= here)) best = {speeds[top.point], here};
+        const double here = values[top.point];
+        if (!(here > kSmallHeat * largest) || !std::isfinite(here)) continue;
+        const BracketedMaximum best =
+            followed_top(top, speeds[top.point], here, kPeakSpeed * top.start, look);
+        if (top.at_end && best.at == speeds[top.point]) continue;  // nothing between the speeds
         if (!(section.heat_peak >= best.value))
           section.heat_peak = best.value, section.heat_peak_speed = best.at;
       }
@@ -428,8 +438,9 @@ void find_sweep_peaks(const System& system, LinearResponse& response, Trigonomet
   const std::function<void()> pause = wanted_pause ? wanted_pause : [] {};
   try {
     const double highest = sweep.orders.back() * sweep.speeds.back();
-    sweep.modes = system.size() > kMostUnknowns ? follow_pairs(system, response, sweep.speeds, highest, pause)
-                                                : follow_modes(system, response, sweep.speeds, pause);
+    sweep.modes = system.size() > kMostUnknowns
+                      ? follow_pairs(system, response, sweep.speeds, highest, pause, sweep)
+                      : follow_modes(system, response, sweep.speeds, pause, sweep);
     const Eigen::Index count = sweep.modes.lambda.rows();
     if (system.size() > kMostUnknowns && count == kMostModes &&
         sweep.modes.lambda.row(count - 1).imag().maxCoeff() < highest)

@@ -19,7 +19,7 @@ namespace drev {
 class LinearResponse;
 class TrigonometricSum;
 
-/// Fills sweep.modes, peaks and criticals. pause: as LinearSweepOptions::pause.
+/// Fills sweep.modes, growth, peaks and criticals. pause: as LinearSweepOptions::pause.
 void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
                       const std::function<void()>& pause, LinearSweep& sweep);
 

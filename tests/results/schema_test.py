@@ -101,6 +101,16 @@ with open("class.toml", "w") as file:
                '[class.sections]\ns = { diameter_mm = 25, tensile_strength_MPa = 500, shape_factor = 0.6, '
                'permissible_heat_W = 50, sn_range_MPa = 100 }\n')
 
+with open("governed.toml", "w") as file:  # a mode that grows
+    file.write("""
+format = 1
+[nodes]
+a = { nominal_speed_rpm = 600 }
+[elements]
+J = { type = "inertia", node = "a", inertia_kg_m2 = 2 }
+gov = { type = "speed_governor", node = "a", proportional_gain_Nms_per_rad = 10, integral_gain_Nm_per_rad = 100, actuator_lag_s = 0.5 }
+t = { type = "engine_order_torque", node = "a", harmonics = { order = [1], amplitude_Nm = [100] } }
+""")
 with open("spline.toml", "w") as file:  # a contact in N m
     file.write('format = 1\n[nodes]\na = { initial_speed_rad_per_s = 2 }\nb = {}\n[elements]\n'
                'Ja = { type = "inertia", node = "a", inertia_kg_m2 = 1 }\n'
@@ -165,6 +175,7 @@ results = {
     "shaft": printed("shaft", "shaft.toml"),
     "counted": printed("run", "class.toml", "--rainflow", "z.force_N", "--energy"),
     "campbell": printed("campbell", "turning.toml", "--speeds", "300:100:1800", "--orders", "2,4"),
+    "growing": printed("sweep", "governed.toml", "--speeds", "600", "--orders", "1"),
     "long sweep": printed("sweep", "many_segments.toml", "--speeds", "900", "--orders", "3000"),
     "unstable": printed("run", "two_mass_backlash", "--set", "k_1_N_per_m=2e8", "k_2_N_per_m=2e8", "--step", "1e-3",
                         code=1),

@@ -4,11 +4,14 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/method.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
 #include <drev/solvers/run/peaks.hpp>
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/start.hpp>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <complex>
 
 #include "tests/catch.hpp"
 
@@ -49,6 +52,40 @@ TEST_CASE("A run from the periodic steady state has the closed form's peak from 
   CHECK(start.error < 1e-6);
   CHECK(std::abs(largest_torque_of(start.system, 1.0) - (50.0 + response)) < 1e-5 * response);
   CHECK(largest_torque_of(system, 1.0) > 1.2 * (50.0 + response));  // the start from rest
+}
+
+TEST_CASE(
+    "A mode that grows is stated by a periodic start and by a sweep, with the rate of the cubic's root") {
+  // J y'' = m, T m' + m = -(K_p y' + K_i y) + p: J T s^3 + J s^2 + K_p s + K_i = 0, which grows where K_p < T K_i (Routh).
+  constexpr double inertia = 2.0, lag = 0.5, k_i = 100.0;
+  for (const double k_p : {20.0, 80.0}) {
+    Model m("governed disc");
+    const NodeId disc = m.add_node("disc");
+    m.set_reference("disc", constant_speed(kMotorSpeed));
+    m.add<Inertia>("J", {disc}, {.inertia = inertia});
+    m.add<SpeedGovernor>("governor", {disc},
+                         {.proportional_gain = k_p, .integral_gain = k_i, .actuator_lag = lag});
+    m.add<EngineOrderTorque>("load", {disc},
+                             {.harmonics = {{.order = 1.0, .amplitude = 20.0}}, .twist_feedback = false});
+    const System system = m.build();
+    Eigen::Matrix3d companion = Eigen::Matrix3d::Zero();
+    companion(1, 0) = companion(2, 1) = 1.0;
+    companion.col(2) << -k_i / (inertia * lag), -k_p / (inertia * lag), -1.0 / lag;
+    std::complex<double> root = -1e9;
+    for (const std::complex<double> s : companion.eigenvalues())
+      if (s.real() > root.real()) root = s;
+    CAPTURE(k_p, root);
+    const FoundStart start = find_start(system, Start::periodic, {.duration = 1.0});
+    const LinearSweep sweep =
+        sweep_linear(system, {.speeds = {kMotorSpeed, 2.0 * kMotorSpeed}, .orders = {1.0}});
+    const bool grows = k_p < lag * k_i;
+    REQUIRE(grows == (root.real() > 0.0));
+    CHECK(start.unsettled().empty() == !grows);
+    for (const Growth& growth : {start.growth, sweep.growth}) {
+      CHECK(growth.rate == Approx(grows ? root.real() : 0.0).epsilon(1e-9));
+      CHECK(growth.frequency_Hz == Approx(grows ? std::abs(root.imag()) / kTwoPi : 0.0).epsilon(1e-9));
+    }
+  }
 }
 
 TEST_CASE("With loads that follow the twist, too, a periodic start repeats after its cycle") {

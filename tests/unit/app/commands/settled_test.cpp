@@ -151,6 +151,32 @@ TEST_CASE("A periodic start that no run settles on is no steady state: a warning
                  "which did not settle on a periodic motion"));
 }
 
+TEST_CASE(
+    "A chain that is far softer at rest than the coupling it stands for: a warning in text, JSON and "
+    "report") {
+  const TemporaryFolder folder;
+  const std::string model = (folder / "m.toml").string(), report = (folder / "r.html").string();
+  for (const char* eta : {"0.1", "0.5"}) {
+    std::ofstream(model) << "format = 1\n[nodes]\nw = { hold = true }\na = {}\n[elements]\n"
+                            "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+                            "c = { type = \"elastic_coupling\", nodes = [\"w\", \"a\"], "
+                            "stiffness_Nm_per_rad = 1e4, loss_factor = "
+                         << eta
+                         << ", lowest_frequency_Hz = 10, highest_frequency_Hz = 20, permitted_error = 0.2 }\n"
+                            "h = { type = \"applied_torque\", node = \"a\", torque_Nm = 100 }\n"
+                            "[run]\nduration_s = 20\nrecord = [\"a.angle_rad\"]\n";
+    std::vector<std::string> words{"run", model, "--report", report};
+    const auto text = drev_command(words);
+    CHECK(text.exit_code == 0);
+    words.emplace_back("--json");
+    const Json warnings = Json::parse(drev_command(words).out).at("warnings");
+    const bool soft = std::string(eta) == "0.5";
+    REQUIRE(warnings.size() == (soft ? 1 : 0));
+    CHECK(contains(unwrapped(text.out), "of the 10000 N m/rad stated") == soft);
+    CHECK(contains(read_file(report), "of the 10000 N m/rad stated") == soft);
+  }
+}
+
 TEST_CASE("What cannot be a start or a settling time is a fault of its place, all at once") {
   const Ran wrong = run_of(disc("8", "start = \"periodc\"\nsettle = \"often\"\n"));
   CHECK(wrong.exit_code == 2);

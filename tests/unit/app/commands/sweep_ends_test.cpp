@@ -49,6 +49,60 @@ TEST_CASE("A motion that grows slowly in a tongue of +1 has no statistics, and t
   CHECK(!contains(text.out, "neither fold nor lose"));
 }
 
+TEST_CASE("A linear sweep of a train with a mode that grows says so in text, JSON and report", "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  std::ofstream(folder / "governed.toml")
+      << "format = 1\n[nodes]\na = { nominal_speed_rpm = 600 }\n[elements]\n"
+         "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 2 }\n"
+         "gov = { type = \"speed_governor\", node = \"a\", proportional_gain_Nms_per_rad = 10, "
+         "integral_gain_Nm_per_rad = 100, actuator_lag_s = 0.5 }\n"
+         "t = { type = \"engine_order_torque\", node = \"a\", harmonics = { order = [1], amplitude_Nm = "
+         "[100] }, "
+         "twist_feedback = false }\n";
+  // Routh: s^3 + 2 s^2 + 10 s + 100 = 0 has the roots -4.5814807 and 1.2907404 +- 4.4900995 i (Newton).
+  const std::string page = (folder / "page.html").string();
+  const std::vector<std::string> words{"sweep", (folder / "governed.toml").string(), "--speeds", "10:10:600"};
+  std::vector<std::string> as_json = words, as_page = words;
+  as_json.emplace_back("--json");
+  as_page.insert(as_page.end(), {"--report", page});
+  const auto text = drev_command(as_page);
+  CHECK(contains(text.out, "The train is unstable: a mode at 0.7146 Hz grows at 1.291 1/s"));
+  CHECK(contains(read_file(page), "The train is unstable: a mode at 0.7146 Hz grows at 1.291 1/s"));
+  const Json grows = Json::parse(drev_command(as_json).out).at("growing_mode");
+  CHECK(grows.at("rate_per_s").get<double>() == Approx(1.2907404).epsilon(1e-7));
+  CHECK(grows.at("frequency_Hz").get<double>() == Approx(4.4900995 / 6.283185307).epsilon(1e-7));
+}
+
+TEST_CASE("A motion within a gap, and a train that nothing excites: the sweep says which", "[sweep]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string model = (folder / "gap.toml").string();
+  const auto sweep = [&](const std::string& train) {
+    std::ofstream(model) << "format = 1\n[nodes]\na = { nominal_speed_rpm = 600 }\nb = {}\n[elements]\n"
+                            "Ja = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+                            "Jb = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 2 }\n"
+                            "da = { type = \"absolute_damper\", node = \"b\", damping_Nms_per_rad = 1 }\n"
+                         << train;
+    std::string text = drev_command({"sweep", model, "--speeds", "200,300", "--cycle", "1"}).out;
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+  };
+  // 20 N m at 20 rad/s and more turn 1 kg m2 by 0.05 rad at the most, within +-0.1 rad.
+  const std::string within = sweep(
+      "play = { type = \"polyline_spring\", nodes = [\"a\", \"b\"], dead_band = { "
+      "stiffness_Nm_per_rad = 2000, half_gap_rad = 0.1 }, damping_Nms_per_rad = 5 }\n"
+      "t = { type = \"engine_order_torque\", node = \"a\", twist_feedback = false, harmonics = { order = "
+      "[1], amplitude_Nm = [20] } }\n");
+  CHECK(contains(within, "or a law stays within its gap throughout"));
+  CHECK(!contains(within, "Nothing vibrates"));
+  const std::string resting = sweep(
+      "play = { type = \"dead_band_coupling\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = 1000, "
+      "gap_rad = 0.01, damping_Nms_per_rad = 2, damping_law = \"proportional\" }\n"
+      "p1 = { type = \"engine_order_torque\", node = \"a\", mean_Nm = 1e3 }\n"
+      "p2 = { type = \"engine_order_torque\", node = \"b\", mean_Nm = -1e3 }\n");
+  CHECK(contains(resting, "Nothing vibrates at 200, 300 rpm"));
+  CHECK(!contains(resting, "more harmonics than were tried"));
+}
+
 TEST_CASE("Orders of a sweep may be quotients", "[sweep]") {
   const drev::test::TemporaryFolder folder;
   std::ofstream(folder / "thirds.toml")

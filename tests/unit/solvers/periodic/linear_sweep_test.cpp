@@ -454,3 +454,37 @@ TEST_CASE("Criticals of a chain of 500 discs: damped modes one by one, peaks bet
     CHECK(sweep.criticals[i].amplitude > 20.0 * sweep.sections[0].half_range().minCoeff());
   }
 }
+
+TEST_CASE("The mean across a coupling with a loss factor is that of the stated stiffness", "[linear_sweep]") {
+  // A shaft of k beside a coupling of k (1 + i eta): each has half of the mean torque, and T / (2 k) of twist.
+  constexpr double k = 1000.0, mean = 100.0;
+  ViscoelasticStiffness::Params constant{
+      .stiffness = k, .lowest_frequency = 5, .highest_frequency = 10, .permitted_error = 1.0};
+  std::vector<ViscoelasticStiffness::Params> materials;
+  for (const double eta : {0.1, 0.3, 0.7, 1.0}) {
+    materials.push_back(constant);
+    materials.back().loss_factor = eta;
+  }
+  materials.push_back(constant);
+  materials.back().stiffness = kNotGiven;
+  materials.back().frequencies = {0.0, 100.0}, materials.back().stiffnesses = {k, 1.2 * k};
+  materials.back().loss_factors = {0.3, 0.3};
+  for (const ViscoelasticStiffness::Params& material : materials) {
+    CAPTURE(material.loss_factor);
+    Model m("two paths");
+    for (const char* node : {"clock", "a"}) m.add_node(node);
+    m.constant_speed("clock", 60.0);
+    m.add<Inertia>("J", {"a"}, {.inertia = 1.0});
+    m.add<ShaftSpring>("shaft", {"clock", "a"}, {.stiffness = k});
+    m.add<ElasticCoupling>("rubber", {"clock", "a"}, {.material = material});
+    m.add<EngineOrderTorque>("load", {"a"},
+                             {.harmonics = {{1.0, 10.0, 0.0}}, .mean = mean, .twist_feedback = false});
+    const LinearSweep sweep =
+        sweep_linear(m.build(), {.speeds = {20.0, 60.0}, .orders = {1.0}, .refine = false});
+    for (const SweepSection& section : sweep.sections)
+      for (const Eigen::Index i : {0, 1}) {
+        CHECK(section.mean[i] == Approx(0.5 * mean).epsilon(1e-9));
+        CHECK(section.twist_mean[i] == Approx(0.5 * mean / k).epsilon(1e-9));
+      }
+  }
+}

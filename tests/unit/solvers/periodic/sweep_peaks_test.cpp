@@ -90,6 +90,34 @@ TEST_CASE("The largest heat is that of the highest top, not of the highest point
   CHECK(end.sections[0].heat_peak_speed == Approx(natural).epsilon(1e-6));
 }
 
+TEST_CASE("A top of the half range beside an end of the speeds is followed", "[sweep_peaks]") {
+  // Torque k* p' / (k* - mu w^2) with k* = k + i c w of an overdamped shaft: its top is at no natural frequency.
+  constexpr double k = 1e4, mu = 1.2;
+  const double c = 2.0 * std::sqrt(k * mu);
+  const auto torque = [&](double w) {
+    const Complex z(k, c * w);
+    return std::abs(mu / 2.0 * 50.0 * z / (z - mu * w * w));
+  };
+  double best = 0.0, at = 0.0;
+  for (double w = 10.0; w < 200.0; w += 1e-3)
+    if (torque(w) > best) best = torque(w), at = w;
+  for (const std::vector<double>& speeds : {std::vector<double>{0.95 * at, 3.0 * at, 4.0 * at},
+                                            std::vector<double>{0.1 * at, 0.2 * at, 1.05 * at}}) {
+    const LinearSweep sweep =
+        sweep_linear(two_discs(c, {{1.0, 50.0, 0.0}}), {.speeds = speeds, .orders = {1.0}});
+    CHECK(largest_half_range(sweep, 0).value == Approx(best).epsilon(1e-9));
+    CHECK(largest_half_range(sweep, 0).speed == Approx(at).margin(2e-3));
+    REQUIRE(sweep.peaks.size() == 1);
+    CHECK_FALSE(sweep.peaks.front().at_end);
+  }
+  // Past the top the curve falls throughout: its largest value is at the first speed.
+  const LinearSweep past = sweep_linear(two_discs(c, {{1.0, 50.0, 0.0}}),
+                                        {.speeds = {1.5 * at, 3.0 * at, 4.0 * at}, .orders = {1.0}});
+  REQUIRE(past.peaks.size() == 1);
+  CHECK(past.peaks.front().at_end);
+  CHECK(past.peaks.front().half_range == Approx(torque(1.5 * at)).epsilon(1e-12));
+}
+
 TEST_CASE("Peaks and heat of modes that coincide are located", "[sweep_peaks]") {
   // Six equal branches on a hub, with torques that add up to nothing: the hub stands still, each branch is one of its own.
   constexpr int branches = 6;
