@@ -67,21 +67,6 @@ std::vector<double> cycles_of(const System& system, const StartOptions& options)
   return cycles;
 }
 
-FoundStart start_static(const System& system, const StartOptions& options) {
-  double cycle = options.cycle;
-  if (const auto& reference = system.reference(); cycle == 0.0 && reference && reference->at) {
-    const double speed = std::abs(reference->at(0.0).rate);
-    if (speed > 0.0) cycle = 2.0 * kTwoPi / speed;
-  }
-  if (cycle == 0.0)
-    if (const double frequency = shared_frequency(system); frequency > 0.0) cycle = 1.0 / frequency;
-  const StaticResult found = solve_static(system, {.mean_over = cycle});
-  return {system.with_initial(found.state.z, found.state.v),
-          "in static equilibrium under " +
-              (cycle > 0.0 ? "the mean of the loads over " + to_text(cycle) + " s" : "the loads at t = 0"),
-          cycle};
-}
-
 /// Whether all that acts where nothing deviates repeats after the cycle.
 bool repeats(const System& system, double cycle) {
   Assembler assembler(system);
@@ -98,6 +83,28 @@ bool repeats(const System& system, double cycle) {
     change = std::max(change, (later - now).cwiseAbs().maxCoeff());
   }
   return change <= kSameLoad * largest;
+}
+
+/// The first cycle in which all that acts repeats, at the speed of the start [s]; where none is, two turns of the reference shaft,
+/// or what the loads' harmonics share; 0: there is none.
+double mean_cycle_of(const System& system) {
+  std::vector<double> cycles;
+  if (const auto& reference = system.reference(); reference && reference->at)
+    if (const double speed = std::abs(reference->at(0.0).rate); speed > 0.0)
+      for (const double turns : {2.0, 1.0, 4.0}) cycles.push_back(turns * kTwoPi / speed);
+  if (const double frequency = shared_frequency(system); frequency > 0.0) cycles.push_back(1.0 / frequency);
+  for (const double cycle : cycles)
+    if (repeats(system, cycle)) return cycle;
+  return cycles.empty() ? 0.0 : cycles.front();
+}
+
+FoundStart start_static(const System& system, const StartOptions& options) {
+  const double cycle = options.cycle > 0.0 ? options.cycle : mean_cycle_of(system);
+  const StaticResult found = solve_static(system, {.mean_over = cycle});
+  return {system.with_initial(found.state.z, found.state.v),
+          "in static equilibrium under " +
+              (cycle > 0.0 ? "the mean of the loads over " + to_text(cycle) + " s" : "the loads at t = 0"),
+          cycle};
 }
 
 double change_of(const Vector& before, const Vector& after) {

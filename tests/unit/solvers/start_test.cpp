@@ -116,6 +116,12 @@ TEST_CASE("A static start is the equilibrium under the mean of the loads, moving
   m.add<Dashpot>("drag", {disc}, {.damping = 0.2});
   const FoundStart dragged = find_start(m.build(), Start::static_equilibrium, {.duration = 1.0});
   CHECK(std::abs(dragged.system.initial_deviation()[0] + 0.2 * kMotorSpeed / 1000.0) < 1e-12);
+
+  // A torque in time that does not repeat in turns of the shaft has the mean of its own period.
+  m.add<AppliedTorque>("pulsation", {disc},
+                       {.harmonics = {{0.0, 7.0, 0.0}, {kMotorSpeed / 10.0, 100.0, -0.5 * kPi}}});
+  const FoundStart pulsating = find_start(m.build(), Start::static_equilibrium, {.duration = 1.0});
+  CHECK(pulsating.system.initial_deviation()[0] == Approx((7.0 - 0.2 * kMotorSpeed) / 1000.0).epsilon(1e-12));
 }
 
 TEST_CASE("The period of torques in time is the one that their harmonics share") {
