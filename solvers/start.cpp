@@ -177,7 +177,9 @@ FoundStart start_periodic(const System& system, const StartOptions& options) {
       how.precision(2);
       how << ", error " << found.error << " of the motion)";
       FoundStart start{system.with_initial(found.z, found.v), how.str(), cycle, found.error};
-      start.growth = growth_beside(system, constant_speed_of(system, options.duration));
+      if (const Growth growth = growth_beside(system, constant_speed_of(system, options.duration));
+          growth.rate > 0.0)
+        start.growing = growth.text();
       return start;
     }
     reason = found.reason;
@@ -205,7 +207,7 @@ std::optional<Start> start_of(const std::string& name) {
 }
 
 std::string FoundStart::unsettled() const {
-  if (growth.rate > 0.0) return "the run starts in a periodic motion that it leaves: " + growth.text();
+  if (!growing.empty()) return "the run starts in a periodic motion that it leaves: " + growing;
   if (!by_run || error <= kSettledPart) return {};
   std::ostringstream text;
   text.precision(2);

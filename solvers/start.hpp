@@ -16,7 +16,6 @@
 /// shaft, the period that all loads' harmonics in time share.
 #include <drev/core/system.hpp>
 #include <drev/solvers/method.hpp>
-#include <drev/solvers/modes/damped_modes.hpp>
 
 #include <functional>
 #include <optional>
@@ -50,9 +49,9 @@ struct FoundStart {
   /// or rate over the last cycle beside the largest of them.
   double error = 0.0;
   bool by_run = false;  ///< a periodic start taken from a run, since harmonic balance found no motion
-  /// Of a periodic start by harmonic balance without nonlinear laws: the mode that grows beside it. Not looked for where a load
-  /// may depend on the speed in a way that load_damping() does not know.
-  Growth growth = {};
+  /// Of a periodic start by harmonic balance without nonlinear laws: the mode that grows beside it (Growth::text()); empty: none
+  /// does. Not looked for where a load may depend on the speed in a way that load_damping() does not know.
+  std::string growing = {};
   /// Why a periodic start is no steady state: a mode grows, or the run changes by more than kSettledPart from cycle to cycle at its
   /// end. A sentence without full stop; empty: it is one, or was not asked for.
   std::string unsettled() const;
