@@ -18,6 +18,7 @@
 
 #include "core/law/curve_cells.hpp"
 #include "tests/catch.hpp"
+#include "tests/stability/runge_kutta.hpp"
 
 using namespace drev;
 
@@ -294,4 +295,28 @@ TEST_CASE("An engine that rocks about rest on its gas pressure: its angle turns 
   CHECK((with.z - without.z).lpNorm<Eigen::Infinity>() < 1e-6 * without.z.lpNorm<Eigen::Infinity>());
   CHECK((with.v - without.v).lpNorm<Eigen::Infinity>() < 1e-6 * without.v.lpNorm<Eigen::Infinity>());
   CHECK(std::abs(run.energy.relative_error()) < 1e-7);
+}
+
+TEST_CASE("Pressure that follows the actual speed, through the ramps of an engine's gate", "[exact]") {
+  Model m("gated");
+  m.add_node("crank", NodeKind::rotational);
+  m.add<Inertia>("J", {"crank"}, {.inertia = 0.1});
+  m.add<AbsoluteDamper>("drag", {"crank"}, {.damping = 0.3});
+  EngineCylinders::Params p = engine_of(rough_gas(Interpolation::cubic));
+  p.oscillating_mass = 0.0;
+  p.firing_angles = {deg(10)};
+  p.gas.firing = {.from_speed = 40.0, .to_speed = 110.0, .speed_ramp = 5.0};
+  m.add<EngineCylinders>("engine", {"crank"}, p);
+  m.set_initial("crank", 0.0, 100.0);
+  const System system = m.build();
+  State expected = State::initial(system);
+  runge_kutta(system, 0.3, 2e-6, expected);
+  for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12}) {
+    State state = State::initial(system);
+    const RunSummary run = propagate(system, {.tolerance = tolerance, .t_end = 0.3}, state);
+    INFO(tolerance << ": " << run.brief_report());
+    CHECK(run.ok());
+    CHECK(state.v[0] == Approx(expected.v[0]).epsilon(std::max(10.0 * tolerance, 2e-8)));
+    CHECK(state.z[0] == Approx(expected.z[0]).epsilon(std::max(10.0 * tolerance, 2e-8)));
+  }
 }
