@@ -160,7 +160,8 @@ bool KinkResponse::find_limit(double end, double allowed, double scale) {
   const double most = allowed / scale;
   double limit = end;
   const bool slopes = loads_.expanded().active() || laws_.active();
-  const ExpandedLoads::SlopeChange change = loads_.expanded().slope_change(series_);
+  ExpandedLoads::SlopeChange change = loads_.expanded().slope_change(series_);
+  change.by_angle += loads_.slope_behind();
   for (int cuts = 0; cuts < kMostCuts; ++cuts) {
     const Others bends = slopes ? error_of_slopes(limit, change, 0.5 * most) : Others{};
     if (bends.error > 0.5 * most && !corrects_ && laws_.active()) {

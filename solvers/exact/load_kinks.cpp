@@ -20,6 +20,7 @@ struct StraightWay {
   double bound, angle_slope, jump = 0.0;
   void take(double slope) { jump = slope - std::exchange(angle_slope, slope); }
   double force() const { return jump; }
+  double bends() const { return 0.0; }
   double chord() const { return std::abs(jump); }
   double slope() const { return std::abs(jump); }
 };
@@ -72,6 +73,8 @@ struct CubicWay {
     return true;
   }
   std::span<const double> force() const { return behind; }
+  /// How far the slope behind the knot comes from that at the knot.
+  double bends() const { return most_slope - std::abs(behind[0]); }
   double chord() const { return most_chord; }
   double slope() const { return most_slope; }
 };
@@ -139,6 +142,8 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, Way& way, double rate, double end,
     }
     kinks_.add(l, knot, way.force(), end);
     kink_sizes_.add(l, rate, way.chord(), way.slope());
+    if (l.feedback)
+      slope_behind_ = std::max(slope_behind_, l.coeff * l.coeff * series.reach(l.row) * way.bends());
     shared_rows_ |= std::exchange(last_kink_[idx(l.row)], listed_before_ + kinks_.count()) > listed_before_;
     steepest += way.slope();
   }
@@ -157,7 +162,7 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
   }
   kinks_.clear();
   kink_sizes_.clear();
-  kinks_inside_ = 0.0;
+  kinks_inside_ = slope_behind_ = 0.0;
   shared_rows_ = false;
   bool all = true;
   const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;

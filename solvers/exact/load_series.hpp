@@ -107,6 +107,8 @@ class LoadSeries {
   /// polynomial holds of them, up to 1e-6 of the motion.
   bool kinked() const { return kinks_.count() > 0 || smooth_.kinked(); }
   /// Bound of what kinks leave inside the step, relative to the motion.
+  /// How far slopes of curved forces behind knots come from those at the knots, as ExpandedLoads::SlopeChange::by_angle.
+  double slope_behind() const { return slope_behind_; }
   double kinks_inside() const { return smooth_.kinked() ? kMostInside : kinks_inside_; }
   /// Appends every s in (0, end) at which a load passes a knot inside the step, loads on prescribed nodes too.
   void append_knots(double end, std::vector<double>& s) const;
@@ -180,6 +182,7 @@ class LoadSeries {
   KinkMoments kinks_;
   /// A kink that leaves more of the motion than this inside the step ends it.
   static constexpr double kMostInside = 1e-6;
+  double slope_behind_ = 0.0;
   double kinks_inside_ = 0.0;   // what kinks of tables leave inside the step, relative to the motion
   std::vector<int> last_kink_;  // by row, the kink listed last, counted from 1 over all listings
   int listed_before_ = 0;       // in listings before this one

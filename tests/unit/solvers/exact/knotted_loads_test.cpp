@@ -320,3 +320,33 @@ TEST_CASE("Pressure that follows the actual speed, through the ramps of an engin
     CHECK(state.z[0] == Approx(expected.z[0]).epsilon(std::max(10.0 * tolerance, 2e-8)));
   }
 }
+
+TEST_CASE("A gas torque that is zero up to a knot and bends behind it: the motion of Runge-Kutta",
+          "[exact]") {
+  // At the dead centre the torque behind the knot begins with the square of the angle, on a load that was none until then.
+  Model m("blow-down");
+  m.add_node("crank");
+  m.add_node("disc");
+  for (const char* node : {"crank", "disc"})
+    m.add<Inertia>(std::string("J_") + node, {node}, {.inertia = 0.1});
+  m.add<ShaftSpring>("shaft", {"crank", "disc"}, {.stiffness = 100.0});
+  EngineCylinders::Params p = engine_of(
+      {.angle = {0.0, deg(90), deg(180), deg(270), deg(330)}, .pressure = {1e5, 1e5, 1e5, 1e5, 5e5}});
+  p.oscillating_mass = 0.0;
+  p.firing_angles = {0.0};
+  p.strokes = 2;
+  m.add<EngineCylinders>("engine", {"crank"}, p);
+  m.set_initial("crank", 0.18, -44.0);
+  m.set_initial("disc", 1.36, -41.0);
+  const System system = m.build();
+  State expected = State::initial(system);
+  runge_kutta(system, 0.1, 1e-6, expected);
+  for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12}) {
+    State state = State::initial(system);
+    const RunSummary run = propagate(system, {.tolerance = tolerance, .t_end = 0.1}, state);
+    INFO(tolerance << ": " << run.brief_report());
+    CHECK(run.ok());
+    CHECK((state.v - expected.v).lpNorm<Eigen::Infinity>() < std::max(10.0 * tolerance, 1e-9) * 50.0);
+    CHECK((state.z - expected.z).lpNorm<Eigen::Infinity>() < std::max(10.0 * tolerance, 1e-9) * 5.0);
+  }
+}
