@@ -35,12 +35,12 @@ inline const System& system_of(const RunRequest& request, const RunPlan& plan) {
   return plan.reduction ? plan.reduction->system : started_system(request, plan);
 }
 
-/// observers: what else watches the run of system_of(request, plan). output_fault: asked now and then; what
-/// keeps the run's output from being written, which ends the run; empty: nothing.
 /// Elements with a loss factor whose chain in time (viscoelastic_stiffness.hpp) is far softer under a mean torque than the stiffness
 /// that they state; a sentence without full stop for each.
 std::vector<std::string> soft_chain_warnings(const System& system);
 
+/// observers: what else watches the run of system_of(request, plan). output_fault: asked now and then; what
+/// keeps the run's output from being written, which ends the run; empty: nothing.
 RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vector<Observer*> observers,
                       const std::function<std::string()>& output_fault);
 

@@ -36,7 +36,8 @@ def _rows(spec, first, count, stop=None):
 class Study:
     """The rows of a study. study["deflection_deg"]: a column; `columns`: every one by its name, parameters first;
     `units`; `status`: of each variant; `reasons`: why variants failed, by their numbers, `warnings`: what a single run
-    with these parameters would warn of (of a study that was complete already: of the first 1000 each); `description`: what the rows follow from."""
+    with these parameters would warn of (of a study that was complete already: of the first 1000 each);
+    `description`: what the rows follow from."""
 
     def __init__(self, source, numbers, reasons):
         self.description = json.loads(source.description)

@@ -148,7 +148,7 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   l.kinked = l.unfinished = false;
   l.off_at_ends = 0.0;
   l.strongest = 1.0;
-  // It bends at speeds, too, which no knot tells: steps that its nodes follow.
+  // It bends at speeds, too, which no knot tells: steps become so short that the nodes follow it.
   if (l.feedback && l.knots->piece_follows_speed()) return differ_called(l, series, forces);
   Samples at;
   double low = 0.0, high = 0.0, slowest = 1e300, fastest = -1e300;

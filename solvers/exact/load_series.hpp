@@ -40,9 +40,9 @@ class LoadSeries {
 
   /// Adds the right side over a step of h seconds and the loads' tangents.
   void add_to(TaylorSeries& series, double h);
-  /// False: no load can differ from what add_to() adds.
   /// Whether some are known only where they are called.
   bool called() const { return smooth_.called(); }
+  /// False: no load can differ from what add_to() adds.
   bool projects() const { return !straight_.empty() || !smooth_.empty() || expanded_.knotted(); }
   /// The part of the step for which the loads' polynomials hold, <= 1; and whether, along the series, some angle came
   /// further than was reckoned with: then the step is to be expanded anew.
@@ -106,9 +106,9 @@ class LoadSeries {
   /// Whether kinks were projected: the series is exact at the step's end, but inside it is off by what no
   /// polynomial holds of them, up to 1e-6 of the motion.
   bool kinked() const { return kinks_.count() > 0 || smooth_.kinked(); }
-  /// Bound of what kinks leave inside the step, relative to the motion.
   /// How far slopes of curved forces behind knots come from those at the knots, as ExpandedLoads::SlopeChange::by_angle.
   double slope_behind() const { return slope_behind_; }
+  /// Bound of what kinks leave inside the step, relative to the motion.
   double kinks_inside() const { return smooth_.kinked() ? kMostInside : kinks_inside_; }
   /// Appends every s in (0, end) at which a load passes a knot inside the step, loads on prescribed nodes too.
   void append_knots(double end, std::vector<double>& s) const;

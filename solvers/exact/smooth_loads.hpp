@@ -8,7 +8,8 @@
 /// A load that says its knots (KnottedLoad: an engine's gas pressure) passes them inside the step: the path between two
 /// of them has Gauss's nodes of its own, and what the load differs from its tangent is projected apart from the smooth
 /// loads, as kinks of tables are. A knot that leaves too much of the motion inside the step ends it. Here are those
-/// that ExpandedLoads does not hold for: of another period, or whose curves follow a speed that changes.
+/// that ExpandedLoads does not hold for: of another period, or whose curves follow a speed that changes. Those that follow the
+/// actual speed bend at speeds, too, and are called as functions are.
 #include <drev/core/assembler.hpp>
 #include <drev/core/law/knotted_load.hpp>
 

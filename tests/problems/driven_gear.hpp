@@ -13,12 +13,14 @@ struct DrivenGear {
   double speed = 1.0;                    ///< w [rad/s]
   MeshStiffness stiffness = 1.0;         ///< k
   double half_gap = 0.0;                 ///< 0: linear
-  double damping = 0.0;                  ///< c, acts in the gap too
+  double damping = 0.0;                  ///< c, by damping_law: as given, it acts in the gap too
   double mean = 0.0;                     ///< N m
   std::vector<Harmonic> harmonics = {};  ///< of w, amplitude [N m]
   double mesh_phase = 0.0;               ///< mesh periods
   double x = 0.0, v = 0.0;               ///< at the start
   TransmissionError transmission_error = {};
+  MeshDamping damping_law = MeshDamping::always;
+  double reference_penetration = GearMesh::Params{}.reference_penetration;  ///< m, of laws that follow it
 
   System build() const {
     Model m("driven gear");
@@ -33,7 +35,8 @@ struct DrivenGear {
                      .stiffness = stiffness,
                      .normal_backlash = 2.0 * half_gap,
                      .damping = damping,
-                     .damping_law = MeshDamping::always,
+                     .damping_law = damping_law,
+                     .reference_penetration = reference_penetration,
                      .transmission_error = transmission_error,
                      .mesh_phase = mesh_phase});
     m.add<EngineOrderTorque>("torque", {"wheel"},

@@ -13,6 +13,7 @@
 #include <complex>
 
 #include "tests/catch.hpp"
+#include "tests/problems/driven_gear.hpp"
 
 using namespace drev;
 
@@ -132,24 +133,15 @@ TEST_CASE("A mesh whose stiffness varies has its bounds where the stiffness of t
   for (const Row& row : {Row{MeshDamping::limited, 0.6542942788},
                          {MeshDamping::contact_only, 0.6262521417},
                          {MeshDamping::proportional, 0.6319922595}}) {
-    Model m("gear pair");
-    m.add_node("pinion");
-    m.add_node("wheel");
-    m.add<Inertia>("J", {"wheel"}, {.inertia = 1.0});
-    m.add<GearMesh>("mesh", {"pinion", "wheel"},
-                    {.base_radius_1 = 1.0,
-                     .base_radius_2 = 1.0,
-                     .teeth_1 = 1,
-                     .teeth_2 = 1,
-                     .stiffness = MeshStiffness::fourier(1.0, {{1.0, 0.2, 0.0}}),
-                     .normal_backlash = 2.0,
-                     .damping = 0.3,
-                     .damping_law = row.law,
-                     .reference_penetration = 0.05,
-                     .transmission_error = std::vector<Harmonic>{{1.0, 0.2, 0.0}}});
-    m.add<EngineOrderTorque>("torque", {"wheel"}, {.mean = 0.1, .twist_feedback = false});
-    m.constant_speed("pinion", 0.8);
-    const NonlinearSweep sweep = sweep_nonlinear(m.build(), {.speeds = {0.8, 0.82}, .turns = 1.0});
+    const problems::DrivenGear gear{.speed = 0.8,
+                                    .stiffness = MeshStiffness::fourier(1.0, {{1.0, 0.2, 0.0}}),
+                                    .half_gap = 1.0,
+                                    .damping = 0.3,
+                                    .mean = 0.1,
+                                    .transmission_error = std::vector<Harmonic>{{1.0, 0.2, 0.0}},
+                                    .damping_law = row.law,
+                                    .reference_penetration = 0.05};
+    const NonlinearSweep sweep = sweep_nonlinear(gear.build(), {.speeds = {0.8, 0.82}, .turns = 1.0});
     INFO("law " << static_cast<int>(row.law));
     const SweptMotion& motion = nearest_motion(sweep, 0.8, row.multiplier);
     CHECK(motion.separates);
