@@ -99,7 +99,8 @@ class Model {
   void given_motion(NodeRef node, Motion deviation);
   /// Nominal motion phi(t) of the reference shaft, through this node: theta_i = n_i phi(t) + q_i.
   void set_reference(NodeRef node, Motion nominal);
-  /// Deviation and its rate at the start; zero unless set. rad, rad/s (or m, m/s).
+  /// Deviation and its rate at the start; zero unless set. rad, rad/s (or m, m/s). Internal nodes of elements that are
+  /// not set then start where no elastic force acts on them, and as fast.
   void set_initial(NodeRef node, double deviation, double rate);
 
   /// Validates, finds the nominal ratios, numbers the unknowns and fixes the sparsity.

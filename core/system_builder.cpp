@@ -130,6 +130,7 @@ void SystemBuilder::find_nominal_motion() {
   system_.floating_closed_ = floating_parts(kinematics.relative, Contact::closed);
   system_.floating_open_ = floating_parts(kinematics.relative, Contact::open);
   std::vector<RatioRow>().swap(ratio_rows_);
+  component_ = std::move(kinematics.component);
   for (std::size_t i = 0; i < resolved_prescriptions_.size(); ++i) {
     const auto& p = model_.prescriptions()[i];
     const int node = resolved_prescriptions_[i];
@@ -262,6 +263,7 @@ void SystemBuilder::set_initial() {
       again = true;
     }
   }
+  if (!model_.initials().empty() && findings_.empty()) start_internal_nodes(set_by);
 }
 
 System SystemBuilder::constrained() {

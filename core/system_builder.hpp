@@ -38,6 +38,10 @@ class SystemBuilder {
   void order_unknowns();
   void check_inertias();
   void set_initial();
+  /// Internal nodes whose start nobody states: where, beside the nodes that are stated, no force acts on them, K_ii q_i = -K_ik q_k, and
+  /// as fast, K_ii q_i' = -K_ik q_k'. Left at rest, a shaft turned as a whole would start twisted by its turn.
+  /// set_by: by unknown, the node that states its start; -1: none.
+  void start_internal_nodes(const std::vector<int>& set_by);
   // Matrices and terms over unknowns, of a model without findings.
   void map_terms();
   void assemble_matrices();
@@ -75,6 +79,7 @@ class SystemBuilder {
       stiffness_[2];  // the second ones take part in C = a M + b K
   std::vector<RatioRow> ratio_rows_;
   std::vector<WideRatioRow> wide_ratio_rows_;
+  std::vector<int> component_;  // Kinematics::component
   struct WideConstraint {
     ElementId element;
     std::vector<Entry> nodes;

@@ -1,4 +1,5 @@
 // The last part of SystemBuilder: elimination, terms and matrices over the unknowns.
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -225,6 +226,64 @@ Vector SystemBuilder::values_on_pattern(int matrix) const {
     if (a.unknown >= 0 && b.unknown >= 0) v[system_.slot(a.unknown, b.unknown)] += value * a.coeff * b.coeff;
   });
   return v;
+}
+
+void SystemBuilder::start_internal_nodes(const std::vector<int>& set_by) {
+  std::vector<int> row(system_.unknown_node_.size(), -1), open;  // of unknowns that nothing states; those
+  for (const ElementInstance& element : model_.element_instances())
+    for (const NodeId id : element.internal)
+      if (const int k = system_.node_map_[idx(index(id))].unknown; k >= 0 && set_by[idx(k)] < 0) {
+        row[idx(k)] = static_cast<int>(open.size());
+        open.push_back(k);
+      }
+  if (open.empty()) return;
+  const int rows = static_cast<int>(open.size());
+  Triplets triplets;
+  Vector diagonal = Vector::Zero(rows), by_damping = Vector::Zero(rows);
+  Eigen::MatrixXd known = Eigen::MatrixXd::Zero(rows, 2);  // -K_ik q_k and -K_ik q_k' of the known nodes k
+  const auto enter = [&](int r, int j, double value, bool deviation) {
+    const NodeMap& map = system_.node_map_[idx(j)];
+    MotionPoint q;
+    if (map.unknown >= 0)
+      q = {system_.initial_z_[map.unknown], system_.initial_v_[map.unknown]};
+    else if (const Motion& motion = system_.prescribed_[idx(map.prescribed)]; motion.at)
+      q = motion.at(0.0);
+    if (deviation) known(r, 0) -= value * map.coeff * q.value;
+    known(r, 1) -= value * map.coeff * q.rate;
+  };
+  const auto each_row = [&](int matrix, const auto& visit) {
+    for_each_entry(matrix, [&](int i, int j, double value) {
+      const NodeMap &a = system_.node_map_[idx(i)], &b = system_.node_map_[idx(j)];
+      if (a.unknown >= 0 && row[idx(a.unknown)] >= 0)
+        visit(row[idx(a.unknown)], b.unknown >= 0 ? row[idx(b.unknown)] : -1, j, a.coeff * value, b.coeff);
+    });
+  };
+  each_row(2, [&](int r, int c, int j, double value, double coeff) {
+    if (c < 0) return enter(r, j, value, true);
+    triplets.emplace_back(r, c, value * coeff);
+    if (r == c) diagonal[r] += value * coeff;
+  });
+  // What a damper alone moves along (a ring in oil) takes the rate at which the damper exerts nothing.
+  each_row(1, [&](int r, int c, int j, double value, double coeff) {
+    if (diagonal[r] != 0.0) return;
+    if (c < 0) return enter(r, j, value, false);
+    if (r == c) by_damping[r] += value * coeff;
+  });
+  for (int r = 0; r < rows; ++r)
+    if (diagonal[r] == 0.0) triplets.emplace_back(r, r, by_damping[r] > 0.0 ? by_damping[r] : 1.0);
+  const Eigen::SimplicialLDLT<SparseMatrix> factor(from_triplets(rows, rows, triplets));
+  if (factor.info() != Eigen::Success) return;
+  const Eigen::MatrixXd start = factor.solve(known);
+  if (!start.allFinite()) return;
+  // Nodes whose speed no other's gives (a governor's actuator) start at rest.
+  std::vector<int> nodes_in(component_.size(), 0);
+  for (const int c : component_) ++nodes_in[idx(c)];
+  for (int r = 0; r < rows; ++r) {
+    const int k = open[idx(r)];
+    system_.initial_z_[k] = start(r, 0);
+    if (nodes_in[idx(component_[idx(system_.unknown_node_[idx(k)])])] > 1)
+      system_.initial_v_[k] = start(r, 1);
+  }
 }
 
 void SystemBuilder::assemble_matrices() {

@@ -14,7 +14,7 @@
 ///   k = K_p/T - K_i,   a^2 = k/T/(P - 1/T),   m = (k + a^2) T/P
 ///
 /// seen from the governed node are (K_p s + K_i)/(1 + T s) exactly: a factor (s + P) that both numerator and
-/// denominator have cancels; P = 2/T where k > 0, else 1/(2 T). It needs K_i > 0.
+/// denominator have cancels; P = 2/T where k > 0, else 1/(2 T). It needs K_i > 0; tau = -K_i q(0) at the start.
 ///
 /// Step dT of the load on an inertia J: J y'' + K_p y' + K_i y = -dT; sigma = K_p/(2 J), w_d^2 = K_i/J - sigma^2,
 ///   speed deviation -dT/(J w_d) exp(-sigma t) sin(w_d t); without K_i: -dT/K_p (1 - exp(-K_p t/J)).

@@ -10,6 +10,8 @@
 /// ACM TOMS 17, 1991, doi:10.1145/210232.210242.
 #include <drev/core/state.hpp>
 
+#include <algorithm>
+
 namespace drev {
 
 class StepControl {
@@ -40,6 +42,8 @@ class StepControl {
   /// A step that could not be solved, and one that is to be halved.
   void failed(double h);
   void shorten(double h);
+  /// The next step is not longer than h.
+  void at_most(double h) { h_ = std::min(h_, h); }
 
  private:
   struct Scales {

@@ -24,8 +24,9 @@ namespace drev {
 
 namespace {
 
-constexpr double kChosenStep = 0.1;    // first step times the fastest eigenvalue
-constexpr double kLargestStep = 0.05;  // largest step over the duration of the run
+constexpr double kChosenStep = 0.1;      // first step times the fastest eigenvalue
+constexpr double kLargestStep = 0.05;    // largest step over the duration of the run
+constexpr double kBehindBreak = 8.3e-5;  // longest step behind a breakpoint over it, where a load is called
 constexpr double kRoundedStep = 1e7;  // longest step times it: near 1e8 rounding leaves nothing of M beside K
 constexpr double kLeastStep = 1e-9;   // step over the duration that is not rejected for its error
 constexpr double kNoStep = 4e-15;     // step over the time of the run with which it hardly goes on any more
@@ -133,7 +134,12 @@ class Run final : public StepMotion {
     const double coarse_step = std::min(o.largest, duration() / kCoarseSteps);
     if (options_.step > 0.0) o.largest = options_.step;
     o.largest = std::min(o.largest, stability_limit(system_, scheme));
-    o.first = o.largest;
+    // What starts at a breakpoint and has faded at the end of a long step would be passed over (a short circuit of 50 Hz that
+    // decays within 10 ms, in steps of 0.5 s).
+    for (const LoadTerm& term : system_.loads())
+      if (!term.load->breakpoints().empty() && !term.load->stretch(0.0, 0.0, 1.0))
+        behind_break_ = kBehindBreak * duration();
+    o.first = std::min(o.largest, behind_break_);
     if (options_.step == 0.0 && fastest > 0.0) o.first = std::min(o.first, kChosenStep / fastest);
     // The embedded formulas of the methods of high order are one order lower.
     if (scheme.tableau && scheme.tableau->e.size() > 0 && o.order > 2) --o.order;
@@ -185,6 +191,7 @@ class Run final : public StepMotion {
       *next_ = *now_;
       controls_->sample(equation_.assembler(), now_->state);
       stepper_->start(*now_);
+      if (control_) control_->at_most(behind_break_);
       energy_->restart(*next_, *now_);
       for (Observer* o : observers_) o->restart(equation_.assembler(), *now_);
     }
@@ -369,7 +376,8 @@ class Run final : public StepMotion {
   RunSummary summary_;
   bool locates_ = false, grows_ = false;
   long coarse_solves_ = 0;
-  double energy_floor_ = 0.0;  // J
+  double energy_floor_ = 0.0;                                      // J
+  double behind_break_ = std::numeric_limits<double>::infinity();  // s
   int failures_ = 0, changes_here_ = 0, energy_tries_ = 0;
 };
 

@@ -3,11 +3,15 @@
 #include <drev/core/law_element.hpp>
 #include <drev/core/system.hpp>
 #include <drev/core/verify.hpp>
+#include <drev/elements/couplings/torsional_damper.hpp>
+#include <drev/elements/distributed_shaft.hpp>
 #include <drev/elements/inertia.hpp>
+#include <drev/elements/machines/speed_governor.hpp>
 #include <drev/solvers/method.hpp>
 #include <drev/solvers/modes/modes.hpp>
 #include <drev/solvers/run/recorder.hpp>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -132,5 +136,62 @@ TEST_CASE("A rack pushed off: momentum and swing by closed form, by steps and by
       const double force = kTeeth * kRadius * speed / omega * std::sin(omega * recorder.times()[i]);
       CHECK(recorder.samples(2)[i] == Approx(force).margin(1e-5 * kTeeth * kRadius * speed / omega));
     }
+  }
+}
+
+TEST_CASE(
+    "Internal nodes that nothing states start where no force acts on them, beside those that are stated") {
+  Model m("shaft and damper");
+  for (const char* name : {"a", "b"}) {
+    m.add_node(name);
+    m.add<Inertia>(std::string("J_") + name, {name}, {.inertia = 1.0});
+  }
+  m.add<DistributedShaft>("shaft", {"a", "b"},
+                          {.shear_modulus = 8e10,
+                           .density = 7850.0,
+                           .outer_diameter = 0.1,
+                           .length = 1.0,
+                           .segments = 4,
+                           .mass = SegmentMass::lumped});
+  m.add<TorsionalDamper>("oil", {"b"}, {.ring_inertia = 0.5, .damping = 2.0});
+  m.add<TorsionalDamper>("rubber", {"b"},
+                         {.ring_inertia = 0.5, .spring = {.stiffness = 10.0}, .damping = 2.0});
+  m.set_initial("a", 1.0, 4.0);
+  m.set_initial("b", 5.0, 8.0);
+  const System s = m.build();
+  const auto starts = [&](const char* node, double deviation, double rate) {
+    INFO(node);
+    const int k = s.node_map(s.node(node)).unknown;
+    CHECK(s.initial_deviation()[k] == Approx(deviation).epsilon(1e-12));
+    CHECK(s.initial_rate()[k] == Approx(rate).epsilon(1e-12));
+  };
+  starts("shaft_1", 2.0, 5.0);
+  starts("shaft_2", 3.0, 6.0);
+  starts("shaft_3", 4.0, 7.0);
+  starts("oil_1", 0.0, 8.0);  // no angle is at rest beside another
+  starts("rubber_1", 5.0, 8.0);
+}
+
+TEST_CASE("A governor with an actuator starts with the torque of its integral, by closed form") {
+  // T tau' + tau = K_p q' + K_i q, J q'' = -tau: (s + 1)(s + 2)(s + 7) = s^3 + 10 s^2 + 23 s + 14.
+  Model m("governed");
+  m.add_node("a");
+  m.add<Inertia>("J", {"a"}, {.inertia = 1.0});
+  m.add<SpeedGovernor>("governor", {"a"},
+                       {.proportional_gain = 2.3, .integral_gain = 1.4, .actuator_lag = 0.1});
+  const double q_0 = 1.0, w_0 = 0.5;
+  m.set_initial("a", q_0, w_0);
+  const System s = m.build();
+  Recorder recorder(s, {"a.angle_rad", "governor.torque_Nm"}, 0.25);
+  REQUIRE(run_method(s, {.name = "exact", .tolerance = 1e-10}, {.t_end = 2.0}, {&recorder}).ok());
+  Eigen::Matrix3d of;
+  of << 1.0, 1.0, 1.0, -1.0, -2.0, -7.0, 1.0, 4.0, 49.0;
+  const Eigen::Vector3d part = of.inverse() * Eigen::Vector3d(q_0, w_0, -1.4 * q_0);
+  for (std::size_t i = 0; i < recorder.times().size(); ++i) {
+    const double t = recorder.times()[i];
+    const Eigen::Vector3d e(std::exp(-t), std::exp(-2.0 * t), std::exp(-7.0 * t));
+    CHECK(recorder.samples(0)[i] == Approx(part.dot(e)).margin(1e-9));
+    CHECK(recorder.samples(1)[i] ==
+          Approx(-part.dot(e.cwiseProduct(Eigen::Vector3d(1.0, 4.0, 49.0)))).margin(1e-9));
   }
 }

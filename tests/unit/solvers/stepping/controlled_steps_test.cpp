@@ -265,3 +265,24 @@ TEST_CASE("The scales of a run far longer than its periods are found in steps th
   CHECK(run.status == RunStatus::interrupted);
   CHECK(run.steps > 100);
 }
+
+TEST_CASE("Controlled steps: a short circuit far shorter than the steps of the run is not passed over") {
+  // J w' = -A exp(-t/T) sin(Omega t) from its start on: w = -A Omega/(J (Omega^2 + 1/T^2)) at the end.
+  const double torque = 1000.0, decay = 0.01, omega = kTwoPi * 50.0;
+  const double expected = -torque * omega / (omega * omega + 1.0 / (decay * decay));
+  for (const double start : {0.0, 0.5}) {
+    Model m("short circuit");
+    m.add_node("rotor");
+    m.add<Inertia>("J", {"rotor"}, {.inertia = 1.0});
+    m.add<Generator>("generator", {"rotor"},
+                     {.fault_time = start, .fault_torque = torque, .fault_decay = decay});
+    const System s = m.build();
+    for (const char* name : {"average_acceleration", "hht", "generalized_alpha", "bathe", "tr_bdf2", "central_difference",
+                             "sdirk4", "rk4", "dormand_prince"}) {
+      INFO(name << ", fault at " << start << " s");
+      State state = State::initial(s);
+      REQUIRE(simulate(s, {.scheme = step_scheme(name), .tolerance = 1e-5, .t_end = 10.0}, state, {}).ok());
+      CHECK(state.v[0] == Approx(expected).epsilon(1e-4));
+    }
+  }
+}
