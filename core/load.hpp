@@ -1,6 +1,7 @@
 #pragma once
 /// A load on one node: p(t, theta, theta_dot) on the RIGHT side of the equation of motion; positive
 /// accelerates the node in the positive sense.
+#include <drev/core/law/law_piece.hpp>
 #include <drev/core/load_table.hpp>
 
 #include <optional>
@@ -24,6 +25,14 @@ struct LoadResponse {
   double dtorque_dspeed = 0.0;  ///< N m s/rad
 };
 
+/// Ranges of what a load sees: time [s], actual angle [rad] and speed [rad/s]; and bounds of the sizes of its slopes over them.
+struct LoadRanges {
+  Interval t, angle, speed;
+};
+struct LoadSlopes {
+  double by_time = 0.0, by_angle = 0.0, by_speed = 0.0;  ///< N m/s, N m/rad, N m s/rad
+};
+
 class Load {
  public:
   virtual ~Load() = default;
@@ -45,6 +54,9 @@ class Load {
     if (!straight) return std::nullopt;
     return straight->stretch(angle, direction);
   }
+  /// How steep a load without stretches may be over ranges, at most: exact propagation looks for what it would pass over between
+  /// the points at which it calls the load (a gate of 1 rad/s, a pulse of 1 ms). nullopt: not known, it looks between them once.
+  virtual std::optional<LoadSlopes> steepest(const LoadRanges& /*over*/) const { return std::nullopt; }
 };
 
 }  // namespace drev

@@ -7,6 +7,8 @@
 
 namespace drev {
 
+struct Ranged;
+
 struct CurvePoint {
   double value = 0.0;
   double slope = 0.0;  ///< d value / d argument
@@ -36,6 +38,8 @@ struct SpeedGate {
                                      high = std::isnan(to_speed) ? open : ramp(to_speed - speed, -1.0);
     return {low.value * high.value, low.slope * high.value + low.value * high.slope};
   }
+  /// The range of g over one of speeds.
+  Ranged over(const Ranged& speed) const;
   void check(ParameterCheck& check) const {
     const bool from = !std::isnan(from_speed), to = !std::isnan(to_speed);
     if (from) check.finite("from_speed", from_speed, "rad/s");

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "core/law/ranged.hpp"
+
 namespace drev {
 
 namespace {
@@ -31,21 +33,27 @@ std::string digits(double value) {
 struct Function {
   const char* name;
   Dual (*at)(const Dual&);
+  Ranged (*over)(const Ranged&);
 };
+Dual value_of(const Function& f, const Dual& a) { return f.at(a); }
+Ranged value_of(const Function& f, const Ranged& a) { return f.over(a); }
 
 /// Of one number: from Op::sqrt on.
 const Function& function_of(Formula::Op op) {
-  static const Function kAll[] = {{"sqrt", drev::sqrt},
-                                  {"abs", drev::abs},
-                                  {"exp", drev::exp},
-                                  {"log", drev::log},
-                                  {"sin", drev::sin},
-                                  {"cos", drev::cos},
-                                  {"tan", [](const Dual& a) { return drev::sin(a) / drev::cos(a); }},
-                                  {"tanh", drev::tanh},
-                                  {"atan", drev::atan}};
+  static const Function kAll[] = {
+      {"sqrt", drev::sqrt, drev::sqrt},
+      {"abs", drev::abs, drev::abs},
+      {"exp", drev::exp, drev::exp},
+      {"log", drev::log, drev::log},
+      {"sin", drev::sin, drev::sin},
+      {"cos", drev::cos, drev::cos},
+      {"tan", [](const Dual& a) { return drev::sin(a) / drev::cos(a); }, drev::tan},
+      {"tanh", drev::tanh, drev::tanh},
+      {"atan", drev::atan, drev::atan}};
   return kAll[static_cast<std::size_t>(op) - static_cast<std::size_t>(Formula::Op::sqrt)];
 }
+
+const Dual& smaller(const Dual& a, const Dual& b) { return b < a ? b : a; }
 
 constexpr std::size_t kOnStack = 64;  // steps of a formula that needs no heap
 
@@ -62,22 +70,23 @@ Formula::Formula(std::vector<Step> steps) : steps_(std::move(steps)) {
   }
 }
 
-Dual Formula::at(std::span<const Dual> variables) const {
+template <class T>
+T Formula::evaluate(std::span<const T> variables) const {
   if (steps_.empty()) return {};
-  std::array<Dual, kOnStack> few;
-  std::vector<Dual> many(steps_.size() > kOnStack ? steps_.size() : 0);
-  Dual* r = many.empty() ? few.data() : many.data();
+  std::array<T, kOnStack> few;
+  std::vector<T> many(steps_.size() > kOnStack ? steps_.size() : 0);
+  T* r = many.empty() ? few.data() : many.data();
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     const Step& s = steps_[i];
-    const auto a = [&]() -> const Dual& { return r[static_cast<std::size_t>(s.a)]; };
-    const auto b = [&]() -> const Dual& { return r[static_cast<std::size_t>(s.b)]; };
+    const auto a = [&]() -> const T& { return r[static_cast<std::size_t>(s.a)]; };
+    const auto b = [&]() -> const T& { return r[static_cast<std::size_t>(s.b)]; };
     switch (s.op) {
       case Op::constant:
         r[i] = s.value;
         break;
       case Op::variable:
-        r[i] = static_cast<std::size_t>(s.a) < variables.size() ? variables[static_cast<std::size_t>(s.a)]
-                                                                : Dual();
+        r[i] =
+            static_cast<std::size_t>(s.a) < variables.size() ? variables[static_cast<std::size_t>(s.a)] : T();
         break;
       case Op::add:
         r[i] = a() + b();
@@ -92,10 +101,10 @@ Dual Formula::at(std::span<const Dual> variables) const {
         r[i] = a() / b();
         break;
       case Op::smaller:
-        r[i] = b() < a() ? b() : a();
+        r[i] = smaller(a(), b());
         break;
       case Op::larger:
-        r[i] = b() > a() ? b() : a();
+        r[i] = -smaller(-a(), -b());
         break;
       case Op::negate:
         r[i] = -a();
@@ -104,11 +113,15 @@ Dual Formula::at(std::span<const Dual> variables) const {
         r[i] = pow(a(), s.value);
         break;
       default:
-        r[i] = function_of(s.op).at(a());
+        r[i] = value_of(function_of(s.op), a());
     }
   }
   return r[steps_.size() - 1];
 }
+
+Dual Formula::at(std::span<const Dual> variables) const { return evaluate(variables); }
+
+Ranged Formula::over(std::span<const Ranged> variables) const { return evaluate(variables); }
 
 std::string Formula::text(std::span<const std::string> names) const {
   if (steps_.empty()) return "0";

@@ -11,6 +11,8 @@
 
 namespace drev {
 
+struct Ranged;
+
 class Formula {
  public:
   enum class Op {
@@ -47,10 +49,14 @@ class Formula {
   const std::vector<Step>& steps() const { return steps_; }
   /// At these values of the variables, in the order of their numbers; a variable that is not there is 0.
   Dual at(std::span<const Dual> variables) const;
+  /// The range of it over ranges of the variables, and of its slopes.
+  Ranged over(std::span<const Ranged> variables) const;
   /// As an expression of a model file with these names for the variables.
   std::string text(std::span<const std::string> names) const;
 
  private:
+  template <class T>
+  T evaluate(std::span<const T> variables) const;
   std::vector<Step> steps_;
 };
 

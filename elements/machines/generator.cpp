@@ -1,6 +1,9 @@
 #include <drev/core/element.hpp>
 #include <drev/elements/machines/generator.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 namespace drev {
 
 void Generator::check(ParameterCheck& check) const {
@@ -29,6 +32,17 @@ void Generator::describe(int nodes, Terms& terms) const {
   terms.outputs.push_back({.suffix = "synchronous",
                            .stiffness = params_.synchronous_stiffness * b,
                            .damping = params_.synchronous_damping * b});
+}
+
+std::optional<LoadSlopes> Generator::steepest(const LoadRanges& over) const {
+  const Params& p = params_;
+  const double since = over.t.low - p.fault_time;
+  if (!faults() || over.t.high < p.fault_time) return LoadSlopes{};
+  // |d/dt e^(-t/T) (A_1 sin w t + A_2 sin 2 w t)| <= e^(-t/T) (|A_1| (w + 1/T) + |A_2| (2 w + 1/T))
+  const double w = kTwoPi * p.grid_frequency, fades = std::isnan(p.fault_decay) ? 0.0 : 1.0 / p.fault_decay;
+  const double steepest =
+      std::abs(p.fault_torque) * (w + fades) + std::abs(p.fault_torque_double) * (2.0 * w + fades);
+  return LoadSlopes{.by_time = std::exp(-fades * std::max(0.0, since)) * steepest};
 }
 
 }  // namespace drev

@@ -59,6 +59,7 @@ class Generator final : public Element, public Load {
     if (faults()) return std::nullopt;
     return LoadStretch{.torque = -params_.torque};
   }
+  std::optional<LoadSlopes> steepest(const LoadRanges& over) const override;
 
  private:
   bool faults() const { return !std::isnan(params_.fault_time); }

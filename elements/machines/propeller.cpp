@@ -1,6 +1,10 @@
 #include <drev/core/element.hpp>
 #include <drev/elements/machines/propeller.hpp>
 
+#include <array>
+
+#include "core/law/ranged.hpp"
+
 namespace drev {
 
 void Propeller::check(ParameterCheck& check) const {
@@ -11,5 +15,13 @@ void Propeller::check(ParameterCheck& check) const {
 }
 
 void Propeller::describe(int /*nodes*/, Terms& terms) const { terms.loads.push_back({0, this}); }
+
+std::optional<LoadSlopes> Propeller::steepest(const LoadRanges& over) const {
+  const std::array<Ranged, 3> x = variables_of(over);
+  Ranged harmonics;
+  for (const Harmonic& h : params_.harmonics)
+    harmonics = harmonics + h.amplitude * cos(h.order * x[0] + h.phase);
+  return slopes_of(torque(x[1], harmonics, size_of(over.speed)));
+}
 
 }  // namespace drev

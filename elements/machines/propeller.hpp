@@ -37,16 +37,21 @@ class Propeller final : public Element, public Load {
   void describe(int /*nodes*/, Terms& terms) const override;
 
   LoadResponse evaluate(const LoadInput& in) const override {
-    const Params& p = params_;
-    const double factor = p.rated_torque / (p.rated_speed * p.rated_speed);
-    const double extra = (p.damping_factor - 2.0) * factor * std::abs(in.nominal_speed);
     return response_of(in, [&](const Dual& angle, const Dual& w) {
-      const Dual harmonics = sum_at(p.harmonics, p.twist_feedback ? angle : Dual(in.nominal_angle));
-      return -factor * w * abs(w) * (1.0 + harmonics) - extra * (w - in.nominal_speed);
+      return torque(w, sum_at(params_.harmonics, params_.twist_feedback ? angle : Dual(in.nominal_angle)),
+                    in.nominal_speed);
     });
   }
+  std::optional<LoadSlopes> steepest(const LoadRanges& over) const override;
 
  private:
+  template <class T>
+  T torque(const T& w, const T& harmonics, double nominal_speed) const {
+    const Params& p = params_;
+    const double factor = p.rated_torque / (p.rated_speed * p.rated_speed);
+    const double extra = (p.damping_factor - 2.0) * factor * std::abs(nominal_speed);
+    return -factor * w * abs(w) * (1.0 + harmonics) - extra * (w - nominal_speed);
+  }
   Params params_;
 };
 

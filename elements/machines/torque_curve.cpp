@@ -1,6 +1,10 @@
 #include <drev/core/element.hpp>
 #include <drev/elements/machines/torque_curve.hpp>
 
+#include <algorithm>
+
+#include "core/law/ranged.hpp"
+
 namespace drev {
 
 void TorqueCurve::check(ParameterCheck& check) const {
@@ -16,5 +20,22 @@ void TorqueCurve::check(ParameterCheck& check) const {
 }
 
 void TorqueCurve::describe(int /*nodes*/, Terms& terms) const { terms.loads.push_back({0, this}); }
+
+std::optional<LoadSlopes> TorqueCurve::steepest(const LoadRanges& over) const {
+  const Interval& w = over.speed;
+  const CurvePoint low = ungated(w.low), high = ungated(w.high);
+  Ranged torque(Interval{std::min(low.value, high.value), std::max(low.value, high.value)});
+  Interval slope{std::min(low.slope, high.slope), std::max(low.slope, high.slope)};
+  for (std::size_t i = 0; i < params_.speeds.size(); ++i) {
+    const double knot = params_.speeds[i];
+    if (!(knot >= w.low && knot <= w.high)) continue;
+    const CurvePoint at =
+        ungated(knot);  // with the slope ahead of it; that behind it is an earlier knot's, or the lower end's
+    torque.value = hull(torque.value, {at.value, at.value});
+    slope = hull(slope, {at.slope, at.slope});
+  }
+  torque.by[1] = slope;
+  return slopes_of(params_.gate.over(Ranged::variable(1, w)) * torque);
+}
 
 }  // namespace drev

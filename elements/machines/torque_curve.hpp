@@ -36,6 +36,7 @@ class TorqueCurve final : public Element, public Load {
     return {.torque = gate.value * tau.value,
             .dtorque_dspeed = gate.value * tau.slope + gate.slope * tau.value};
   }
+  std::optional<LoadSlopes> steepest(const LoadRanges& over) const override;
 
  private:
   CurvePoint ungated(double speed) const {

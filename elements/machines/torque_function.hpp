@@ -53,6 +53,8 @@ class TorqueFunction final : public Element, public Load {
     });
   }
   std::vector<double> breakpoints() const override { return params_.breakpoints; }
+  /// Of a formula; nobody knows those of a function.
+  std::optional<LoadSlopes> steepest(const LoadRanges& over) const override;
 
  private:
   Params params_;

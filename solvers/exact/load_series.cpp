@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solvers/contact/roots.hpp"
 #include "solvers/linear/vector_kernels.hpp"
@@ -28,7 +29,7 @@ constexpr double kKinkRest = 1e-5;
 constexpr double kForceRounding = 4e-15;
 // What a projection leaves is rounding where it is below kMostRounding of the force and a step of at most kMuchShorter the length
 // leaves at least kSameRest of it. A smooth force would leave far less, and a jump below kMostRounding moves next to nothing.
-constexpr double kMostRounding = 1e-7, kMuchShorter = 0.3, kSameRest = 0.5;
+constexpr double kMostRounding = 1e-10, kMuchShorter = 0.3, kSameRest = 0.5;
 constexpr double kRoundingVaries = 16.0;  // from step to step, at most
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
@@ -196,7 +197,8 @@ std::optional<double> LoadSeries::find_rounding(const ProjectedLaws& laws) {
   return found;
 }
 
-LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held) {
+LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held,
+                                     double unseen) {
   if (first) {
     for (int k = 0; k < 3; ++k) std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
     last_.clear();
@@ -210,7 +212,12 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   Pass pass;
   pass.follows = smooth_.follows();
   pass.contraction = find_kinks(series);
-  pass.contraction = std::max(pass.contraction, smooth_.project(series, first, projection_, of_kinks_));
+  // A force that does more moves more than may be left unseen; where nothing has moved yet, any.
+  const auto least_of = [&](int row) { return unseen / (kNodeRest * relative_move(series, row)); };
+  pass.contraction =
+      std::max(pass.contraction, smooth_.project(series, first, projection_, of_kinks_, least_of));
+  smooth_.for_rounding(
+      [&](int row, double rounding) { rounding_[idx(row)] = std::max(rounding_[idx(row)], rounding); });
   if (!laws.empty()) {
     of_loads_ = projection_;
     if (kinked()) of_loads_ += of_kinks_;
@@ -251,6 +258,9 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     pass.inside = std::max(pass.inside, kPathRest * smooth);
     pass.residual = std::max(pass.residual, at_end * smooth);
     pass.unseen = std::max(pass.unseen, kNodeRest * measured(rest.rough));
+    // A train at rest, which is moved between the nodes alone.
+    if (rest.rough > 0.0 && !std::isfinite(relative_move(series, row)) && size_of_force(row) == 0.0)
+      pass.unseen = std::numeric_limits<double>::infinity();
   };
   smooth_.for_rows(note_rest);
   laws.for_rows(note_rest);

@@ -69,8 +69,8 @@ class LoadSeries {
     bool follows = false;  ///< some load that is called follows the motion
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
-  /// first: the step is new. held: some friction contact is stuck.
-  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held);
+  /// first: the step is new. held: some friction contact is stuck. unseen: what may be left unseen, as Pass::unseen.
+  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held, double unseen);
   /// After a pass over a step that leaves too much: where that is rounding of forces, since a longer step from the same start
   /// left no more, the length of that one [s]. Passes leave as much out of account from then on.
   std::optional<double> find_rounding(const ProjectedLaws& laws);

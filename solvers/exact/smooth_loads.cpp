@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "core/law/ranged.hpp"
 #include "solvers/exact/expanded_loads.hpp"
 
 namespace drev {
+
+namespace {
+constexpr double kTorqueRounding = 1e-15;  // of a torque, an angle and a speed, relative to them
+}  // namespace
 
 void SmoothLoads::find_loads(const MotionPoint& nominal) {
   const bool constant = ExpandedLoads::is_constant(nominal);
@@ -52,35 +58,156 @@ void SmoothLoads::add_slopes(TaylorSeries& series) const {
   for (const Place& l : loads_) l.add_slopes(series, 0.0);
 }
 
+/// A called load at s of the step, on the series' path.
+struct SmoothLoads::Point {
+  double s = 0.0, angle = 0.0, speed = 0.0;  // rad, rad/s
+  double beyond = 0.0;                       // its tangent, on the row [N m]
+  LoadResponse response = {};
+};
+
+SmoothLoads::Point SmoothLoads::look(const Place& l, double s, double along, double rate) const {
+  const double turn = (phi_[1] + phi_[2] * s) * s, deviation = l.coeff * along;
+  const double nominal_speed = l.ratio * (phi_[1] + 2.0 * phi_[2] * s) / h_;
+  const LoadInput in{.t = t_ + h_ * s,
+                     .nominal_angle = l.ratio * (nominal_ + turn),
+                     .deviation = deviation,
+                     .speed = nominal_speed + l.coeff * rate,
+                     .nominal_speed = nominal_speed};
+  const LoadResponse r = l.term->load->evaluate(in);
+  const double tangent = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
+  return {s, in.nominal_angle + deviation, in.speed, l.coeff * (r.torque - l.torque - tangent), r};
+}
+
+/// What a called load does between the points at which it was called.
+class SmoothLoads::Between {
+ public:
+  using AtNodes = std::array<double, GaussRule::kNodes>;
+  Between(const SmoothLoads& of, const Place& load, const TaylorSeries& series, const AtNodes& at_nodes)
+      : of_(of), load_(load), series_(series) {
+    const GaussRule& rule = gauss_rule();
+    for (std::size_t j = 0; j < a_.size(); ++j) {
+      for (std::size_t q = 0; q < at_nodes.size(); ++q)
+        a_[j] += rule.weight[q] * rule.legendre[j][q] * at_nodes[q];
+      a_[j] *= 2.0 * static_cast<double>(j) + 1.0;
+    }
+  }
+
+  Point look(double s) const {
+    double along = 0.0, rate = 0.0;
+    for (int k = series_.degree(); load_.feedback && k >= 0; --k) {
+      rate = rate * s + along;
+      along = along * s + series_.coefficient(k, load_.row);
+    }
+    return of_.look(load_, s, along, rate / of_.h_);
+  }
+
+  /// The most that the load is off its projection between points in the order of s.
+  double off(std::span<const Point> points) {
+    if (!bound(points)) {
+      for (std::size_t i = 0; i + 1 < points.size(); ++i) take(look(0.5 * (points[i].s + points[i + 1].s)));
+      return off_;
+    }
+    if (hides(points))
+      for (std::size_t i = 0; i + 1 < points.size(); ++i) divide(points[i], points[i + 1], kDeepest);
+    return off_;
+  }
+
+ private:
+  // How much more than its points show a load may change between them; how often a part is halved; looks at most.
+  static constexpr double kMore = 8.0;
+  static constexpr int kDeepest = 14, kMostLooks = 400;
+  // The path between points comes beyond them, relative to what they span.
+  static constexpr double kBeyond = 0.3;
+
+  /// How far the load may change over the points' ranges [N m]. None: it does not say.
+  std::optional<double> bound(std::span<const Point> points) const {
+    LoadRanges over;
+    over.t = {of_.t_ + of_.h_ * points.front().s, of_.t_ + of_.h_ * points.back().s};
+    over.angle = {points[0].angle, points[0].angle};
+    over.speed = {points[0].speed, points[0].speed};
+    for (const Point& p : points) {
+      over.angle = hull(over.angle, {p.angle, p.angle});
+      over.speed = hull(over.speed, {p.speed, p.speed});
+    }
+    const auto widen = [](Interval& x) {
+      const double by = kBeyond * (x.high - x.low);
+      x = {x.low - by, x.high + by};
+    };
+    widen(over.angle);
+    if (load_.feedback) widen(over.speed);
+    const std::optional<LoadSlopes> slopes = load_.term->load->steepest(over);
+    if (!slopes) return std::nullopt;
+    const auto change = [](double slope, const Interval& x) {
+      return x.high > x.low && slope > 0.0 ? slope * (x.high - x.low) : 0.0;
+    };
+    return std::abs(load_.coeff) * (change(slopes->by_time, over.t) + change(slopes->by_angle, over.angle) +
+                                    change(slopes->by_speed, over.speed));
+  }
+
+  /// Whether it may change by far more than the points show, and move something by it.
+  bool hides(std::span<const Point> points) const {
+    const double may = bound(points).value_or(0.0), length = points.back().s - points.front().s;
+    if (may * length <= load_.least) return false;
+    double shown = 0.0;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i)
+      shown += std::abs(load_.coeff * (points[i + 1].response.torque - points[i].response.torque));
+    return !(may <= kMore * shown);
+  }
+
+  void divide(const Point& a, const Point& b, int depth) {
+    if (looks_ >= kMostLooks) return;
+    const Point middle = take(look(0.5 * (a.s + b.s)));
+    const std::array<Point, 3> points{a, middle, b};
+    if (depth == 0 || !hides(points)) return;
+    divide(a, middle, depth - 1);
+    divide(middle, b, depth - 1);
+  }
+
+  Point take(const Point& p) {
+    ++looks_;
+    const double x = 2.0 * p.s - 1.0;
+    double projected = 0.0, now = 1.0, before = 0.0;
+    for (std::size_t j = 0; j < a_.size(); ++j) {
+      projected += a_[j] * now;
+      const double k = static_cast<double>(j), next = ((2.0 * k + 1.0) * x * now - k * before) / (k + 1.0);
+      before = now;
+      now = next;
+    }
+    off_ = std::max(off_, std::abs(p.beyond - projected));
+    return p;
+  }
+
+  const SmoothLoads& of_;
+  const Place& load_;
+  const TaylorSeries& series_;
+  std::array<double, kProjectionTerms> a_{};  // of the load alone
+  double off_ = 0.0;
+  int looks_ = 0;
+};
+
 double SmoothLoads::differ_called(Place& l, const TaylorSeries& series, NodeForces& forces) const {
   const GaussRule& rule = gauss_rule();
   double gain = 0.0;
-  const auto differ = [&](double s, double along, double rate) {
-    const double turn = (phi_[1] + phi_[2] * s) * s, deviation = l.coeff * along;
-    const double nominal_speed = l.ratio * (phi_[1] + 2.0 * phi_[2] * s) / h_;
-    const LoadResponse r = l.term->load->evaluate({.t = t_ + h_ * s,
-                                                   .nominal_angle = l.ratio * (nominal_ + turn),
-                                                   .deviation = deviation,
-                                                   .speed = nominal_speed + l.coeff * rate,
-                                                   .nominal_speed = nominal_speed});
+  Between::AtNodes at_nodes;
+  std::array<Point, GaussRule::kNodes + 2> points;
+  points.front() = {0.0, l.angle, l.speed, 0.0, {.torque = l.torque}};
+  l.rounding = 0.0;
+  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+    const std::size_t at = q * idx(stride_) + idx(l.row);
+    const Point& p = points[q + 1] = look(l, rule.s[q], path_[at], rate_[at]);
+    const LoadResponse& r = p.response;
     if (l.feedback)
       gain = std::max(gain,
                       0.5 * h_ * h_ * std::abs(r.dtorque_dangle - l.slope) + h_ * std::abs(r.dtorque_dspeed));
-    const double tangent = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
-    return l.coeff * (r.torque - l.torque - tangent);
-  };
-  std::array<double, GaussRule::kNodes> at_nodes;
-  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
-    const std::size_t at = q * idx(stride_) + idx(l.row);
-    at_nodes[q] = differ(rule.s[q], path_[at], rate_[at]);
-    forces.at(q, l.row) += at_nodes[q];
+    l.rounding = std::max(l.rounding, kTorqueRounding * std::abs(l.coeff) *
+                                          (std::abs(r.torque) + std::abs(r.dtorque_dangle * p.angle) +
+                                           std::abs(r.dtorque_dspeed * p.speed)));
+    at_nodes[q] = p.beyond;
+    forces.at(q, l.row) += p.beyond;
   }
-  double along = 0.0, rate = 0.0;
-  for (int k = series.degree(); l.feedback && k >= 0; --k) {
-    rate = rate * GaussRule::kAheadOfEnd + along;
-    along = along * GaussRule::kAheadOfEnd + series.coefficient(k, l.row);
-  }
-  l.off_at_ends = rule.off_at_ends(at_nodes, 0.0, differ(GaussRule::kAheadOfEnd, along, rate / h_));
+  Between between(*this, l, series, at_nodes);
+  points.back() = between.look(GaussRule::kAheadOfEnd);
+  l.off_at_ends = std::max(rule.off_at_ends(at_nodes, 0.0, points.back().beyond), between.off(points));
   return gain;
 }
 

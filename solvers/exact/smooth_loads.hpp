@@ -5,6 +5,10 @@
 /// the stiffness; what it differs from that along the path is taken at Gauss's nodes and projected
 /// (legendre_projection.hpp). A load that follows no motion is taken there once a step.
 ///
+/// Between the nodes a load may do what none of them sees: a motor's curve of 1 rad/s in a train that swings by 100, a pulse. A load that
+/// bounds its slopes (Load::steepest) is looked at between two points wherever it may change by far more than they show, until it
+/// cannot, or what it may do moves nothing; any other is looked at once between any two nodes.
+///
 /// A load that says its knots (KnottedLoad: an engine's gas pressure) passes them inside the step: the path between two
 /// of them has Gauss's nodes of its own, and what the load differs from its tangent is projected apart from the smooth
 /// loads, as kinks of tables are. A knot that leaves too much of the motion inside the step ends it. Here are those
@@ -55,9 +59,13 @@ class SmoothLoads {
   }
   /// Adds to the projection what the loads differ from their tangents along the series' path; returns how much of
   /// a change of the path comes back. first: the step is new.
-  /// kinks: takes the loads that pass knots in the step.
+  /// kinks: takes the loads that pass knots in the step. least_of(row): the force [N m] over the whole step that moves nothing.
+  template <class LeastOf>
   double project(const TaylorSeries& series, bool first, LegendreProjection& projection,
-                 LegendreProjection& kinks);
+                 LegendreProjection& kinks, const LeastOf& least_of) {
+    for (Place& l : loads_) l.least = least_of(l.row);
+    return project(series, first, projection, kinks);
+  }
   /// Whether some of them follow the motion.
   bool follows() const {
     return std::any_of(loads_.begin(), loads_.end(), [](const Place& l) { return l.feedback; });
@@ -72,7 +80,13 @@ class SmoothLoads {
     for (const Place& l : loads_)
       if (l.kinked) judge(l.row, l.contraction, l.strongest, l.unfinished);
   }
-  /// Calls judge(row, off_at_ends) for every row with such a load: GaussRule::off_at_ends().
+  /// Calls note(row, rounding) for every row with such a load: of its torque by that of the angle and speed in the step [N m].
+  template <class Note>
+  void for_rounding(const Note& note) const {
+    for (const Place& l : loads_) note(l.row, l.rounding);
+  }
+  /// Calls judge(row, off_at_ends) for every row with such a load: how far it is off its projection at the ends of the step and
+  /// where no node is.
   template <class Judge>
   void for_rows(const Judge& judge) const {
     for (const Place& l : loads_) judge(l.row, l.off_at_ends);
@@ -85,10 +99,13 @@ class SmoothLoads {
     using TangentLoad::TangentLoad;
     bool kinked = false, unfinished = false;  // what this pass found of the load
     double strongest = 1.0;                   // of the knots passed
-    double off_at_ends = 0.0;                 // GaussRule::off_at_ends() [N m]
+    double off_at_ends = 0.0;                 // GaussRule::off_at_ends() [N m], and between the nodes
+    double rounding = 0.0, least = 0.0;       // for_rounding(); least_of()
   };
   struct Samples;
   double beyond_tangent(const Place& load, const Samples& at, std::size_t q) const;
+  double project(const TaylorSeries& series, bool first, LegendreProjection& projection,
+                 LegendreProjection& kinks);
   void find_loads(const MotionPoint& nominal);
   double differ_knotted(Place& load, const TaylorSeries& series, NodeForces& forces,
                         LegendreProjection& kinks);
@@ -96,6 +113,9 @@ class SmoothLoads {
   void sample(const Place& load, const double* s, Samples& at) const;
   double add_interval(Place& load, double from, double to, LegendreProjection& kinks) const;
   double differ_called(Place& load, const TaylorSeries& series, NodeForces& forces) const;
+  struct Point;
+  class Between;
+  Point look(const Place& load, double s, double along, double rate) const;
 
   const System& system_;
   int stride_;

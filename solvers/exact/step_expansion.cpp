@@ -201,8 +201,9 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     };
     if (got < h || !projects || (last && sure)) return done();
     if (pass == kMaxPasses) return {0.5 * h};
-    const LoadSeries::Pass made = known.project(series, smooth, pass == 0, friction.holds());
-    const double of_jump = std::max(share, kJump * limits.tolerance), unseen = made.unseen / of_jump;
+    const double of_jump = std::max(share, kJump * limits.tolerance);
+    const LoadSeries::Pass made = known.project(series, smooth, pass == 0, friction.holds(), of_jump);
+    const double unseen = made.unseen / of_jump;
     excess = std::max({made.residual / of_jump, unseen, made.inside / (kInside * limits.tolerance),
                        made.torque / kTorqueRest});
     tells_length = excess > unseen && excess <= 1.0;

@@ -23,7 +23,7 @@ struct Balance {
   Number worst_imbalance{};  ///< J, largest in size over the run
   Number worst_time{};       ///< s
   Number given{};            ///< J, largest of |input|, dissipated and the start's energy over the run
-  Number scale{};            ///< J, largest of input, dissipated, kinetic + stored over the run
+  Number scale{};            ///< J, largest of input, dissipated, kinetic + |stored| over the run
 };
 
 struct EnergyBalance : Balance<double> {
@@ -46,7 +46,11 @@ template <class Number, class Value, class Mask>
   Value given = each(b.given) < put_in ? put_in : each(b.given);
   given = given < dissipated ? dissipated : given;
   Value scale = each(b.scale) < given ? given : each(b.scale);
-  scale = scale < energy ? energy : scale;
+  // A law's own energy may be below zero (a coupling that snaps through).
+  Value held = stored;
+  magnitude(held);
+  held = kinetic + held;
+  scale = scale < held ? held : scale;
   const Mask worse = good & (size > worst);
   put_where(worse, imbalance, each(b.worst_imbalance));
   put_where(worse, Value{} + t, each(b.worst_time));

@@ -1,5 +1,7 @@
 #include "solvers/run/energy_monitor.hpp"
 
+#include <cmath>
+
 #include "solvers/linear/vector_kernels.hpp"
 
 namespace drev {
@@ -10,7 +12,8 @@ EnergyMonitor::EnergyMonitor(const Assembler& assembler, const EvaluatedState& s
       damped_((assembler.system().damping_values().array() != 0.0).any()) {
   balance_.kinetic = 0.5 * mass_.energy(start.state.v);
   balance_.stored = stored(start);
-  balance_.start = balance_.given = balance_.scale = balance_.kinetic + balance_.stored;
+  balance_.start = balance_.kinetic + balance_.stored;
+  balance_.given = balance_.scale = balance_.kinetic + std::abs(balance_.stored);
 }
 
 double EnergyMonitor::stored(const EvaluatedState& point) const {

@@ -1,5 +1,9 @@
 // What one run and eight in lanes share: balance (energy_balance.hpp), extremes (peak.hpp) and contact
 // totals (contact_record.hpp) are the same numbers for a double as in each lane.
+#include <drev/core/law_element.hpp>
+#include <drev/core/model.hpp>
+#include <drev/elements/inertia.hpp>
+#include <drev/solvers/method.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
 #include <drev/solvers/run/energy_balance.hpp>
 #include <drev/solvers/run/peaks.hpp>
@@ -93,5 +97,39 @@ TEST_CASE("Extremes and contact totals: the same for one run and in lanes") {
     CHECK(totals[lane].largest_force == lane_totals.largest_force.v[lane]);
     CHECK(totals[lane].largest_force_time == lane_totals.largest_force_time.v[lane]);
     CHECK(largest[lane] == lane_largest.v[lane]);
+  }
+}
+
+namespace {
+
+/// A coupling that snaps through: y = -k x + a x^3, of energy a/4 x^4 - k/2 x^2, below zero between its two rests.
+struct SnapLaw {
+  double k = 1e3, a = 1e6;
+  ScalarResponse operator()(const ScalarInput& in) const {
+    const double x = in.x, x_2 = x * x;
+    return {.y = (a * x_2 - k) * x,
+            .dy_dx = 3.0 * a * x_2 - k,
+            .stored_energy = (0.25 * a * x_2 - 0.5 * k) * x_2};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A law whose energy is below zero leaves a scale to the balance, in every method") {
+  Model m("snap");
+  m.add_node("a");
+  m.add<Inertia>("J", {"a"}, {.inertia = 1.0});
+  m.add<LawElement<SnapLaw>>("coupling", {"a"}, {});
+  m.set_initial("a", 0.001, 0.0);
+  const System s = m.build();
+  for (const Method& method :
+       {Method{.name = "exact", .tolerance = 1e-10}, Method{.name = "dormand_prince", .tolerance = 1e-9},
+        Method{.name = "sdirk4", .tolerance = 1e-8}}) {
+    INFO(to_text(method));
+    State state = State::initial(s);
+    const RunSummary summary = run_method(s, method, {.t_end = 0.5}, state, {});
+    CHECK(summary.ok());
+    CHECK(summary.steps + summary.rejected < 20000);
+    CHECK(state.z[0] == Approx(0.0433873387002).epsilon(1e-6));  // DOP853 of scipy at 1e-13
   }
 }
