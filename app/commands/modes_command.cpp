@@ -104,6 +104,7 @@ std::string decay_text(double lambda, double rounding) {
 double rounding_of(const DampedModeSet& set) {
   double largest = 0.0;
   for (const DampedMode& mode : set.modes) largest = std::max(largest, std::abs(mode.lambda));
+  for (const double lambda : set.real_lambda) largest = std::max(largest, std::abs(lambda));
   return 1e-13 * largest;
 }
 
