@@ -148,6 +148,23 @@ def test_arguments_that_cannot_be():
         drev.load("nowhere.toml")
 
 
+def test_forces_are_written_into_out_or_it_is_refused():
+    system = swinging().build()
+    z, v = system.initial
+    for evaluate in (system.acceleration, system.force):
+        expected = evaluate(0.0, z, v)
+        assert np.any(expected != 0)
+        out = np.zeros(2)
+        assert evaluate(0.0, z, v, out=out) is out and np.array_equal(out, expected)
+        for wrong in (np.zeros(4)[::2], np.zeros(2)[::-1], np.zeros(2, np.float32), np.zeros(2, int), np.zeros((2, 1)), [0.0, 0.0]):
+            with pytest.raises(TypeError, match="out must be .*array of float64"):
+                evaluate(0.0, z, v, out=wrong)
+        fixed = np.zeros(2)
+        fixed.flags.writeable = False
+        with pytest.raises(TypeError, match="read-only"):
+            evaluate(0.0, z, v, out=fixed)
+
+
 def test_names_of_any_text():
     m = drev.Model('a "quoted" / name\\')
     m.add_node("Knoten ä 1")
