@@ -60,6 +60,9 @@ TEST_CASE("A free train whose modes do not swing turns freely, and does not grow
                          "Ja = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
                          "Jb = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 0.5 }\n"
                          "d = { type = \"dashpot\", nodes = [\"a\", \"b\"], damping_Nms_per_rad = 1 }\n";
+  const auto counted = drev_command({"modes", path, "--count", "1"});
+  CHECK(counted.exit_code == 2);
+  CHECK(contains(counted.err, "--count = 1, must be left out: the model has no elastic modes"));
   const auto text = drev_command({"modes", path, "--damped"});
   INFO(text.out << text.err);
   CHECK(contains(text.out, "0 1/s: turns freely, without drag"));
