@@ -177,6 +177,24 @@ TEST_CASE("What is wrong with an optimisation is said at once") {
   CHECK(contains(name.err, "--variants = 0"));
 }
 
+TEST_CASE("The least energy error is that of the least size, of either sign") {
+  const auto found =
+      drev_command({"optimise", "gear_drive", "--vary", "backlash_mm=0.05,0.15,0.25", "--minimise",
+                    "energy_error", "--step", "1e-4", "--duration", "0.05", "--json"});
+  INFO(found.out << found.err);
+  REQUIRE(found.exit_code == 0);
+  const Json best = Json::parse(found.out).at("best");
+  REQUIRE(best.size() == 3);
+  bool negative = false;
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    const double error = best[i].at("value").get<double>();
+    negative |= error < 0.0;
+    if (i > 0) CHECK(std::abs(error) > std::abs(best[i - 1].at("value").get<double>()));
+  }
+  CHECK(negative);
+  CHECK(best[2].at("value") > 0.0);
+}
+
 TEST_CASE("An optimisation of a model that settles has its figures of the whole runs, with --settle 0") {
   const TemporaryFolder folder;
   const std::string file = absorber_file(folder);
