@@ -68,25 +68,35 @@ std::shared_ptr<const ModelFile> open_model_file(const CommandLine& line, const 
   return nullptr;
 }
 
+std::optional<Parameters> model_parameters(const CommandLine& line) {
+  try {
+    const std::shared_ptr<const ModelFile> file = open_model_file(line, line.option("--run").value_or(""));
+    std::vector<Finding> none;
+    if (const ModelEntry* entry = file ? &file->entry() : find_built_in(line.model, none))
+      return Parameters(entry->name, entry->parameters);
+  } catch (const ModelError&) {  // build_model() says it
+  }
+  return std::nullopt;
+}
+
 void check_finite(const char* option, const CommandLine& line,
                   const std::vector<std::pair<std::string, std::string>>& values,
                   std::vector<Finding>& findings) {
-  std::shared_ptr<const ModelFile> file;
+  std::optional<Parameters> known;
   for (const auto& [name, value] : values) {
     double number = 0.0;
     if (!read_number(value, number) || std::isfinite(number)) continue;
     Finding finding{kCommandLine, std::string(option) + " " + name, value, "", "must be a finite number"};
-    try {
-      if (!file) file = open_model_file(line, line.option("--run").value_or(""));
-      std::vector<Finding> none;
-      if (const ModelEntry* entry = file ? &file->entry() : find_built_in(line.model, none)) {
-        Parameters probe(entry->name, entry->parameters);
-        probe.set(name, value);
+    if (!known) known = model_parameters(line);
+    if (known) {
+      Parameters probe = *known;
+      probe.set(name, value);
+      try {
         probe.check();
+      } catch (const ModelError& error) {
+        const Finding& own = error.findings().front();
+        if (own.parameter == name) finding.unit = own.unit, finding.range = own.range;
       }
-    } catch (const ModelError& error) {  // of the parameter; what is wrong with the file, build_model() says
-      const Finding& own = error.findings().front();
-      if (own.parameter == name) finding.unit = own.unit, finding.range = own.range;
     }
     findings.push_back(std::move(finding));
   }

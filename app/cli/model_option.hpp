@@ -17,6 +17,8 @@ bool is_built_in(const std::string& model);
 
 /// The model file that is meant; null: a built-in model. Throws ModelError with everything wrong with the file.
 std::shared_ptr<const ModelFile> open_model_file(const CommandLine& line, const std::string& run);
+/// The parameters of the MODEL, with their defaults; nothing if there is no such model, or what is wrong with its file.
+std::optional<Parameters> model_parameters(const CommandLine& line);
 /// A finding on `option` for each value that is not finite, with what the model's parameter of that name may be.
 void check_finite(const char* option, const CommandLine& line,
                   const std::vector<std::pair<std::string, std::string>>& values,

@@ -34,7 +34,11 @@ ModesRequest request_modes(const CommandLine& line) {
   if (line.option("--contact") == "open") options.contact = Contact::open;
   std::optional<int> elastic;
   if (model) elastic = model->system.size() - model->system.rigid_mode_count(options.contact);
-  if (const auto count = line.option("--count"))
+  if (const auto count = line.option("--count"); count && elastic == 0)
+    findings.push_back({kCommandLine, "--count", *count, "",
+                        "must be left out: the model has no elastic modes" +
+                            std::string(options.contact == Contact::open ? " with open contacts" : "")});
+  else if (count)
     options.count = read_count("--count", *count, elastic, ", the model's elastic modes", findings);
   const bool damped = line.options.contains("--damped");
   double speed = 0.0;
@@ -104,6 +108,7 @@ std::string decay_text(double lambda, double rounding) {
 double rounding_of(const DampedModeSet& set) {
   double largest = 0.0;
   for (const DampedMode& mode : set.modes) largest = std::max(largest, std::abs(mode.lambda));
+  for (const double lambda : set.real_lambda) largest = std::max(largest, std::abs(lambda));
   return 1e-13 * largest;
 }
 

@@ -1,6 +1,7 @@
 #include "app/commands/run_variants.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <thread>
@@ -154,6 +155,28 @@ int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks,
   return summary.exit_code;
 }
 
+/// A distribution gives a number with digits that nobody typed: of a parameter that is another thing it is refused at once.
+void check_distributions(const CommandLine& line, const std::vector<Varied>& varied,
+                         std::vector<Finding>& findings) {
+  using enum Varied::Kind;
+  std::optional<Parameters> known;
+  for (const Varied& v : varied) {
+    if (v.kind != uniform && v.kind != normal) continue;
+    if (!known && !(known = model_parameters(line))) return;
+    for (const Parameter& p : known->known()) {
+      if (p.name != v.name || p.kind == Parameter::Kind::number) continue;
+      std::string why = "has a distribution of numbers, and " + p.name + " is " + p.range() +
+                        ": give values, " + p.name + "=A,B,C";
+      if (p.kind == Parameter::Kind::integer)
+        why = p.name + " is a whole number: give its values, " + p.name + "=" +
+              (v.kind == uniform ? short_digits(std::ceil(v.first), 12) + ":1:" +
+                                       short_digits(std::max(std::ceil(v.first), std::floor(v.second)), 12)
+                                 : "FIRST:1:LAST");
+      findings.push_back({kCommandLine, "--vary", v.name + "=" + v.text, "", why});
+    }
+  }
+}
+
 }  // namespace
 
 VariantStudy study_of(const CommandLine& line) {
@@ -176,6 +199,7 @@ VariantStudy study_of(const CommandLine& line) {
   const bool sampled = line.option("--sample").has_value();
   std::vector<Varied> varied = read_varied(words, sampled ? 0.0 : VariantPlan::kMost, findings);
   check_finite("--vary", line, listed_values(varied), findings);
+  check_distributions(line, varied, findings);
   std::optional<Sampling> sampling;
   if (sampled) sampling = read_sampling(*line.option("--sample"), findings);
   std::vector<Correlation> correlations =

@@ -18,12 +18,12 @@ class ColumnReader {
       : source_(source), where_(where), kind_(kind), columns_(columns), context_(context) {}
 
   bool read() {
-    const std::size_t before = context_.findings.size();
+    before_ = context_.findings.size();
     if (source_.find("csv") != nullptr)
       from_csv();
     else
       from_arrays();
-    if (unreadable_ || context_.findings.size() != before) return false;
+    if (unreadable_ || context_.findings.size() != before_) return false;
     for (const Column& column : columns_) column.values->resize(columns_.front().values->size(), 0.0);
     return true;
   }
@@ -48,12 +48,13 @@ class ColumnReader {
                      "must be an array of numbers, [ ... ], not " + kind_name(array)));
         continue;
       }
-      column.values->clear();
+      column.values->assign(array.items.size(), 0.0);  // what is no number counts in the length, too
       const std::size_t before = context_.findings.size();
-      for (const Value& item : array.items) {
+      for (std::size_t i = 0; i < array.items.size(); ++i) {
         if (context_.findings.size() - before >= kMostFaultsOfArray) break;
-        if (const auto read = read_number(item, found->unit, where_ + "." + found->entry->key, context_))
-          column.values->push_back(*read * found->factor);
+        const std::string place = where_ + "." + found->entry->key;
+        if (const auto read = read_number(array.items[i], found->unit, place, context_))
+          (*column.values)[i] = *read * found->factor;
       }
     }
     same_length();
@@ -130,6 +131,7 @@ class ColumnReader {
 
   void same_length() {
     const Column& first = columns_.front();
+    if (first.values->empty() && context_.findings.size() != before_) return;  // it is what has a fault
     for (const Column& column : columns_)
       if (!column.values->empty() && column.values->size() != first.values->size())
         context_.findings.push_back(fault_at(
@@ -143,6 +145,7 @@ class ColumnReader {
   NodeKind kind_;
   const std::vector<Column>& columns_;
   ReadContext& context_;
+  std::size_t before_ = 0;  // number of findings before it
   bool unreadable_ = false;
 };
 

@@ -34,6 +34,7 @@ class OptimumSearch {
   OptimumSearch(const VariantStudy& study, const OptimumOptions& options)
       : study_(study),
         options_(options),
+        by_size_(study.figures()[options.figure].name == "energy_error"),
         most_(study.plan().sampling() ? options.variants : study.plan().count()),
         pace_(study.plan().sampling() ? study.plan().count() : 0, most_,
               study.block_size() > 1 ? 0 : options.threads) {
@@ -99,7 +100,10 @@ class OptimumSearch {
     }
   }
 
-  double cost(const TriedVariant& tried) const { return options_.largest ? -tried.figure : tried.figure; }
+  double cost(const TriedVariant& tried) const {
+    const double figure = by_size_ ? std::abs(tried.figure) : tried.figure;
+    return options_.largest ? -figure : figure;
+  }
 
   std::vector<std::size_t> ranked() const {
     std::vector<std::size_t> order;
@@ -250,6 +254,7 @@ class OptimumSearch {
 
   const VariantStudy& study_;
   const OptimumOptions& options_;
+  bool by_size_;  // an error's sign says whether energy was lost or made, not how good it is
   std::uint64_t most_, limit_ = 0, computed_ = 0;
   OptimumPace pace_;
   std::size_t coordinates_ = 0;

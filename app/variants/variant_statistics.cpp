@@ -14,9 +14,10 @@ constexpr double kParts[] = {0.01, 0.05, 0.5, 0.95, 0.99};
 
 VariantStatistics::VariantStatistics(const VariantStudy& study) {
   for (const FigureColumn& column : study.figures()) figures_.push_back({.column = column});
+  used_.assign(figures_.size(), 0);
   squares_.assign(figures_.size(), 0.0);
   const auto& sampling = study.plan().sampling();
-  independent_ = sampling.has_value();
+  has_intervals_ = sampling && sampling->points > 1;
   if (!sampling || sampling->kind != Sampling::Kind::saltelli) return;
   const std::size_t parameters = study.plan().varied().size();
   group_ = parameters + 2;
@@ -36,9 +37,10 @@ void VariantStatistics::look(std::uint64_t variant, const double* row) {
     FigureStatistics& s = figures_[f];
     if (s.count == 0 || value < s.min) s.min = value, s.at_min = variant;
     if (s.count == 0 || value > s.max) s.max = value, s.at_max = variant;
-    ++s.count;  // Welford's update
-    const double off = value - s.mean;
-    s.mean += off / static_cast<double>(s.count);
+    ++s.count;
+    if (!is_independent(variant)) continue;
+    const double off = value - s.mean;  // Welford's update
+    s.mean += off / static_cast<double>(++used_[f]);
     squares_[f] += off * (value - s.mean);
   }
 }
@@ -48,26 +50,35 @@ double VariantStatistics::bin_of(std::size_t figure, double value) const {
   return s.max > s.min ? (value - s.min) / (s.max - s.min) : 0.0;
 }
 
-void VariantStatistics::look_again(const double* row) {
+void VariantStatistics::look_again(std::uint64_t variant, const double* row) {
   if (bins_.empty()) {
+    for (FigureStatistics& s : figures_)
+      if (s.count > 0) s.histogram.assign(kBars, 0);
     bins_.assign(figures_.size(), std::vector<std::uint64_t>(kBins));
     values_.resize(figures_.size());
   }
   for (std::size_t f = 0; f < figures_.size(); ++f) {
     const double value = row[1 + f];
     if (!std::isfinite(value)) continue;
-    ++bins_[f][std::min(kBins - 1, static_cast<std::size_t>(bin_of(f, value) * kBins))];
-    if (figures_[f].count <= kBins) values_[f].push_back(value);
+    const std::size_t bin = std::min(kBins - 1, static_cast<std::size_t>(bin_of(f, value) * kBins));
+    ++figures_[f].histogram[bin * kBars / kBins];
+    if (!is_independent(variant)) continue;
+    ++bins_[f][bin];
+    if (used_[f] <= kBins) values_[f].push_back(value);
   }
 }
 
 void VariantStatistics::finish() {
   for (std::size_t f = 0; f < figures_.size(); ++f) {
     FigureStatistics& s = figures_[f];
-    if (s.count == 0) continue;
-    const auto n = static_cast<double>(s.count);
-    if (s.count > 1) s.deviation = std::sqrt(squares_[f] / (n - 1.0));
-    if (independent_) s.mean_error = kNormal95 * s.deviation / std::sqrt(n);
+    if (used_[f] == 0) {
+      s = {.column = s.column};  // also where only rows that depend on others have the figure
+      continue;
+    }
+    const auto n = static_cast<double>(used_[f]);
+    if (used_[f] > 1) s.deviation = std::sqrt(squares_[f] / (n - 1.0));
+    const bool known = has_intervals_ && used_[f] > 1;
+    if (known) s.mean_error = kNormal95 * s.deviation / std::sqrt(n);
     std::sort(values_[f].begin(), values_[f].end());
     const auto at_rank = [&](double rank) {  // the value that `rank` values do not exceed
       if (!values_[f].empty()) {  // the i-th value stands at the rank i - 1/2: the median is the middle one
@@ -85,11 +96,11 @@ void VariantStatistics::finish() {
     };
     for (const double part : kParts) {
       const double spread = kNormal95 * std::sqrt(n * part * (1.0 - part));
-      s.quantiles.push_back({part, at_rank(part * n), at_rank(std::max(0.0, part * n - spread)),
-                             at_rank(std::min(n, part * n + spread))});
+      s.quantiles.push_back({.part = part, .value = at_rank(part * n)});
+      // Beyond the least and the largest value nothing bounds a quantile: few values tell no end of its interval.
+      if (known && part * n > spread) s.quantiles.back().low = at_rank(part * n - spread);
+      if (known && part * n + spread < n) s.quantiles.back().high = at_rank(part * n + spread);
     }
-    s.histogram.assign(kBars, 0);
-    for (std::size_t bin = 0; bin < kBins; ++bin) s.histogram[bin * kBars / kBins] += bins_[f][bin];
     if (group_ > 0) s.indices = indices_[f].indices();
   }
 }

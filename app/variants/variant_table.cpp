@@ -66,7 +66,7 @@ Json figure_object(const VariantStudy& study, const FigureStatistics& s) {
               {"unit", s.column.unit},
               {"count", s.count},
               {"mean", any ? number(s.mean) : Json()},
-              {"mean_error", any && study.plan().sampling() ? number(s.mean_error) : Json()},
+              {"mean_error", number(s.mean_error)},
               {"deviation", any ? number(s.deviation) : Json()},
               {"min", extreme(s.min, s.at_min)},
               {"max", extreme(s.max, s.at_max)},
@@ -131,14 +131,14 @@ std::string remarks_text(const VariantStudy& study, const std::vector<Remark>& r
 }
 
 std::string figures_text(const VariantStudy& study, const VariantStatistics& statistics) {
-  const bool sampled = study.plan().sampling().has_value();
   std::vector<std::vector<std::string>> rows{
       {"figure", "mean", "deviation", "least", "5 %", "median", "95 %", "largest"}};
   for (const FigureStatistics& s : statistics.figures()) {
     if (s.count == 0) continue;
     const std::string unit = s.column.unit.empty() ? "" : " [" + s.column.unit + "]";
     rows.push_back({s.column.name + unit,
-                    short_digits(s.mean, 5) + (sampled ? " +- " + short_digits(s.mean_error, 2) : ""),
+                    short_digits(s.mean, 5) +
+                        (std::isfinite(s.mean_error) ? " +- " + short_digits(s.mean_error, 2) : ""),
                     short_digits(s.deviation, 4), short_digits(s.min, 5),
                     short_digits(s.quantiles[1].value, 4), short_digits(s.quantiles[2].value, 4),
                     short_digits(s.quantiles[3].value, 4), short_digits(s.max, 5)});
@@ -169,7 +169,7 @@ VariantStatistics statistics_of(const VariantStudy& study, const VariantStore& s
       for (std::uint64_t i = 0; i < study.count_of(block); ++i) {
         const double* row = rows.numbers.data() + i * study.row_size();
         if (again)
-          statistics.look_again(row);
+          statistics.look_again(study.first_of(block) + i, row);
         else
           statistics.look(study.first_of(block) + i, row);
       }

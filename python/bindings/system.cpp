@@ -141,9 +141,10 @@ void bind_system(nb::module_& module) {
             return modes_of(b.system(), count, contact);
           },
           nb::arg("count").none(), nb::arg("contact"))
-      .def("force", &BuiltModel::force, nb::arg("t"), nb::arg("deviations"), nb::arg("rates"), nb::arg("out"))
+      .def("force", &BuiltModel::force, nb::arg("t"), nb::arg("deviations"), nb::arg("rates"),
+           nb::arg("out").noconvert())
       .def("acceleration", &BuiltModel::acceleration, nb::arg("t"), nb::arg("deviations"), nb::arg("rates"),
-           nb::arg("out"));
+           nb::arg("out").noconvert());  // a converted copy would be filled, and dropped
   module.def("build", &build, nb::arg("request"), nb::rv_policy::take_ownership);
 }
 

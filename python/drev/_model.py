@@ -53,14 +53,11 @@ class Model(ModelCase):
             what = {"nodes": "node", "elements": "element"}.get(section, section.rstrip("s"))
             self._faults.append(_errors.Finding(self.name, what, name, "", "is there already"))
             return name
-        entries[name] = {k: v for k, v in values.items() if v is not None}
-        for key, given in entries[name].items():
-            _toml.value(given, f"{name}.{key}")  # a value that no file can hold is refused at once
+        entries[name] = _written(name, values)
         return name
 
     def _change(self, section, name, values):
-        entries = self._sections[section]
-        entries.setdefault(name, {}).update({k: v for k, v in values.items() if v is not None})
+        self._sections[section].setdefault(name, {}).update(_written(name, values))
 
     def add_node(self, name, kind=None, **keys):
         """Adds a node; `kind`: "rotational" (default) or "translational". Returns its name.
@@ -156,7 +153,7 @@ class Model(ModelCase):
 
     def add_list(self, name, values):
         """A list of numbers for expressions, LIST[k] counted from 1."""
-        self._sections["lists"][name] = list(values)
+        self._sections["lists"][name] = _toml.written(list(values), name)
         return name
 
     def add_table(self, name, columns=None, **more):
@@ -171,13 +168,13 @@ class Model(ModelCase):
         """Defaults for run(): duration_s, record, deflection, torques, start, ...
         (docs/model_file.md#runs). name: name of a separate run, for run(run=name)."""
         if name is None:
-            self._sections["run"].update(keys)
+            self._sections["run"].update(_written("run", keys))
         else:
             self._change("run", name, keys)
 
     def set_class(self, **keys):
         """Strength of the sections, for judge(): rated_speed_rpm, sections={name: {...}} (docs/class_report.md)."""
-        self._sections["class"].update(keys)
+        self._sections["class"].update(_written("class", keys))
 
     # Attributes that the extension module reads.
     def _text(self):
@@ -220,6 +217,12 @@ class Model(ModelCase):
     def __repr__(self):
         nodes, elements = len(self._sections["nodes"]), len(self._sections["elements"])
         return f"<drev.Model {self.name!r}: {nodes} nodes, {elements} elements>"
+
+
+def _written(name, values):
+    """The keys with their values as text, as they are now: arrays may be used again, and what no file can hold is refused at
+    once."""
+    return {key: _toml.written(given, f"{name}.{key}") for key, given in values.items() if given is not None}
 
 
 def _argument_count(function):

@@ -42,18 +42,30 @@ class System:
         """Deviations and rates at the start."""
         return self._handle.initial
 
-    def force(self, t, deviations, rates, out=None):
-        """p - C z' - K z minus the forces of the laws [N m or N] at time t [s]. float64 arrays of `size` entries; `out` is
-        filled and returned."""
+    def _writable(self, out):
+        """`out`, or a new array. One that would have to be copied is refused: the copy would be filled."""
         if out is None:
-            out = np.empty(self.size)
+            return np.empty(self.size)
+        if not isinstance(out, np.ndarray):
+            raise TypeError(f"out must be an array of float64, not {type(out).__name__}")
+        if out.dtype != np.float64 or out.ndim != 1 or not out.flags.c_contiguous or not out.flags.writeable:
+            state = ("C-contiguous" if out.flags.c_contiguous else f"strides {out.strides}") + (
+                "" if out.flags.writeable else ", read-only")
+            raise TypeError(
+                "out must be a writable, C-contiguous array of float64 with one dimension, "
+                f"not {out.dtype} of shape {out.shape}, {state}")
+        return out
+
+    def force(self, t, deviations, rates, out=None):
+        """p - C z' - K z minus the forces of the laws [N m or N] at time t [s]. float64 arrays of `size` entries; `out`,
+        writable and C-contiguous, is filled and returned."""
+        out = self._writable(out)
         self._handle.force(t, deviations, rates, out)
         return out
 
     def acceleration(self, t, deviations, rates, out=None):
         """Acceleration z'' = M^-1 force [rad/s2 or m/s2]. Raises SolverError if a node has no inertia."""
-        if out is None:
-            out = np.empty(self.size)
+        out = self._writable(out)
         self._handle.acceleration(t, deviations, rates, out)
         return out
 

@@ -21,8 +21,18 @@ def number(value):
     return repr(value) if math.isfinite(value) else ("inf" if value > 0 else "-inf")
 
 
+class Written(str):
+    """TOML text of a value: what is changed later in the value does not change it."""
+
+
+def written(given, where):
+    return Written(value(given, where))
+
+
 def value(given, where=""):
     """The value as TOML text. Raises TypeError for a value that a model file cannot hold."""
+    if isinstance(given, Written):
+        return str(given)
     if isinstance(given, (bool, np.bool_)):
         return "true" if given else "false"
     if isinstance(given, str):
@@ -34,6 +44,8 @@ def value(given, where=""):
     if isinstance(given, dict):
         inside = ", ".join(f"{key(str(k))} = {value(v, f'{where}.{k}')}" for k, v in given.items())
         return "{ " + inside + " }"
+    if np.ma.is_masked(given):
+        raise TypeError(f"{where or 'value'}: entries are masked; a model has a number in each place")
     if isinstance(given, np.ndarray) and given.ndim == 1 and given.dtype.kind == "f":
         return "[" + ", ".join(map(number, given.tolist())) + "]"
     if hasattr(given, "tolist"):  # other arrays, and series of pandas

@@ -50,6 +50,15 @@ bool rigid_motions_stand_apart(const Matrix& k, const Matrix& v, int rigid) {
   return found == rigid;
 }
 
+/// Whether a pair is a multiple real lambda that rounding has split: 0, of several rigid motions' rates, or of equal parts.
+bool is_split(std::complex<double> lambda, const Eigen::VectorXcd& vector, int elastic, double rounding) {
+  constexpr double kNoSwing = 1e-9, kNoDeflection = 1e-6;
+  if (lambda.imag() > rounding) return false;
+  if (lambda.imag() <= kNoSwing * std::abs(lambda.real())) return true;
+  // What swings deflects, however slowly: a very soft mode stays one.
+  return std::abs(lambda) <= rounding && vector.head(elastic).norm() <= kNoDeflection * vector.norm();
+}
+
 /// rounding: absolute value of a real part [1/s] up to which it is 0.
 DampedMode to_mode(std::complex<double> lambda, double rounding) {
   if (std::abs(lambda.real()) <= rounding) lambda.real(0.0);
@@ -120,18 +129,22 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
   if (!eigen.converged)
     throw SolverError("damped modes of " + system.name() + ": the eigensolver did not converge");
 
+  constexpr double kRealRounding = 4.0 * std::numeric_limits<double>::epsilon();
   std::vector<int> oscillating;
   for (int j = 0; j < e + n; ++j) {
     const std::complex<double> lambda = eigen.values[j];
-    if (lambda.imag() == 0.0) set.real_lambda.push_back(lambda.real());
-    if (lambda.imag() > 0.0) oscillating.push_back(j);
+    if (lambda.imag() == 0.0)
+      set.real_lambda.push_back(lambda.real());
+    else if (lambda.imag() > 0.0 && is_split(lambda, eigen.vectors.col(j), e, kRealRounding * a.norm()))
+      set.real_lambda.insert(set.real_lambda.end(), 2, lambda.real());
+    else if (lambda.imag() > 0.0)
+      oscillating.push_back(j);
   }
   std::sort(set.real_lambda.rbegin(), set.real_lambda.rend());
   std::sort(oscillating.begin(), oscillating.end(),
             [&](int i, int j) { return std::abs(eigen.values[i]) < std::abs(eigen.values[j]); });
   // Nothing damps or feeds energy in: no mode decays or grows.
   const bool conservative = system.symmetric_tangent() && c.isZero(0.0);
-  constexpr double kRealRounding = 4.0 * std::numeric_limits<double>::epsilon();
   const Matrix to_unknowns = mass.solve_lower_transposed(v);
   set.shapes.setZero(system.node_count(), static_cast<Eigen::Index>(oscillating.size()));
   for (std::size_t j = 0; j < oscillating.size(); ++j) {

@@ -17,7 +17,8 @@
 /// |K^|, y are the undamped modes (modes.hpp), each with its own w_0 = omega_j.
 ///
 /// Accuracy: about eps w_0 (eps max omega_j), absolute; half the digits at critical damping (a double lambda).
-/// Real parts within 4 eps w_0 are 0, and all are where nothing damps and the tangents are symmetric.
+/// Real parts within 4 eps w_0 are 0, and all are where nothing damps and the tangents are symmetric. A real lambda
+/// of several motions at once stays real, though rounding splits it into a pair.
 ///
 /// Source: F. Tisseur, K. Meerbergen, The quadratic eigenvalue problem, SIAM Review 43(2), 2001,
 /// doi:10.1137/S0036144500381988.

@@ -148,6 +148,54 @@ def test_arguments_that_cannot_be():
         drev.load("nowhere.toml")
 
 
+def turned_by(torque):
+    m = drev.Model("turned")
+    m.add_node("a")
+    m.add_inertia("J", "a", inertia_kg_m2=1.0)
+    m.add_applied_torque("q", "a", table={"time_s": [0, 1], "torque_Nm": torque})
+    return m
+
+
+@pytest.mark.parametrize("torque", [[0.0, 1.0], np.array([0.0, 1.0])])
+def test_a_model_keeps_what_it_was_given(torque):
+    m = turned_by(torque)
+    m.add_list("l", torque)
+    ends, record = ["a", "b"], ["a.angle_rad"]
+    m.add_node("b")
+    m.add_inertia("J_b", "b", inertia_kg_m2=1.0)
+    m.add_shaft_spring("s", ends, stiffness_Nm_per_rad=100)
+    m.set_run(record=record)
+    before = m.source
+    torque[1], ends[1], record[0] = 5.0, "c", "b.angle_rad"
+    assert m.source == before
+
+
+def test_a_table_with_a_gap_names_the_key():
+    with pytest.raises(drev.ModelError) as refused:
+        turned_by(np.array([0.0, np.nan])).check()
+    assert [f.range for f in refused.value.findings] == ["must be finite, not NaN"]
+    with pytest.raises(TypeError, match=r"q\.table\.torque_Nm: entries are masked"):
+        turned_by(np.ma.masked_array([0.0, 1.0], [False, True]))
+    assert "[0.0, 1.0]" in turned_by(np.ma.masked_array([0.0, 1.0])).source
+
+
+def test_forces_are_written_into_out_or_it_is_refused():
+    system = swinging().build()
+    z, v = system.initial
+    for evaluate in (system.acceleration, system.force):
+        expected = evaluate(0.0, z, v)
+        assert np.any(expected != 0)
+        out = np.zeros(2)
+        assert evaluate(0.0, z, v, out=out) is out and np.array_equal(out, expected)
+        for wrong in (np.zeros(4)[::2], np.zeros(2)[::-1], np.zeros(2, np.float32), np.zeros(2, int), np.zeros((2, 1)), [0.0, 0.0]):
+            with pytest.raises(TypeError, match="out must be .*array of float64"):
+                evaluate(0.0, z, v, out=wrong)
+        fixed = np.zeros(2)
+        fixed.flags.writeable = False
+        with pytest.raises(TypeError, match="read-only"):
+            evaluate(0.0, z, v, out=fixed)
+
+
 def test_names_of_any_text():
     m = drev.Model('a "quoted" / name\\')
     m.add_node("Knoten ä 1")

@@ -37,6 +37,7 @@ function showFigures() {
       `. Method: ${study.method}${study.step_s > 0 ? `, step ${quantity(study.step_s, "s")}` : ""}. `,
       study.sample
         ? "Mean ± half its 95 % interval, as of independent variants: too wide for a Latin hypercube and a Sobol sequence. " +
+            (study.sample.startsWith("saltelli") ? "Mean, deviation and quantiles are of the independent variants, two of each block. " : "") +
             "In brackets: 95 % intervals of quantiles, by order statistics."
         : "A table of all combinations is no sample: its means and quantiles have no intervals.",
     ),
@@ -44,7 +45,8 @@ function showFigures() {
       ["figure", "mean", "standard deviation", "5 %", "median", "95 %", "least", "largest"],
       known.map((figure) => {
         const at = (part) => figure.quantiles.find((q) => q.part === part);
-        const part = (q) => quantity(q.value, figure.unit) + (study.sample ? ` [${quantity(q.low, figure.unit, 3)}, ${quantity(q.high, figure.unit, 3)}]` : "");
+        const end = (value) => (value === null ? "?" : quantity(value, figure.unit, 3)); // beyond all values
+        const part = (q) => quantity(q.value, figure.unit) + (q.low !== null || q.high !== null ? ` [${end(q.low)}, ${end(q.high)}]` : "");
         return [
           figure.name,
           figure.mean_error === null ? quantity(figure.mean, figure.unit, 5) : plusMinus(figure.mean, figure.mean_error, figure.unit),
@@ -132,7 +134,7 @@ function histogram(figure) {
       );
     });
     const mark = (value, from, to, color, dash, name) => {
-      if (from !== null)
+      if (from !== null && to !== null)
         parts.push(
           draw("rect", { x: x(from * f), width: Math.max(1, x(to * f) - x(from * f)), y: PLOT.top, height: y(0) - PLOT.top, style: `fill: var(${color}); fill-opacity: .25` }),
         );
@@ -145,7 +147,7 @@ function histogram(figure) {
       );
     };
     for (const q of figure.quantiles.filter(({ part }) => [0.05, 0.5, 0.95].includes(part)))
-      mark(q.value, ...(result.study.sample ? [q.low, q.high] : [null, null]), "--c1", "5 3", `${percent(q.part)}: ${quantity(q.value, figure.unit)}`);
+      mark(q.value, q.low, q.high, "--c1", "5 3", `${percent(q.part)}: ${quantity(q.value, figure.unit)}`);
     const e = figure.mean_error;
     mark(figure.mean, ...(e === null ? [null, null] : [figure.mean - e, figure.mean + e]), "--ink", null, `mean ${quantity(figure.mean, figure.unit, 5)}`);
   });
@@ -159,7 +161,7 @@ function histogram(figure) {
       make("span", { class: "unit" }, ` ${integer(figure.count)} values in ${figure.histogram.length} equal parts `),
       make("span", { class: "together" }, keyMark("--ink"), "mean"),
       make("span", { class: "together" }, keyMark("--c1", [5, 3]), "5 %, median, 95 %"),
-      result.study.sample ? make("span", { class: "unit" }, " bands: 95 % intervals") : null,
+      figure.mean_error !== null ? make("span", { class: "unit" }, " bands: 95 % intervals") : null,
     ),
     picture,
   );

@@ -52,3 +52,26 @@ TEST_CASE("Modes of a bent spring name the torque that holds it, and its stiffne
   CHECK_FALSE(contains(drev_command({"modes", "two_mass_backlash"}).out, "bent"));
   CHECK_FALSE(contains(drev_command({"modes", "camshaft"}).out, "bent"));
 }
+
+TEST_CASE("A free train whose modes do not swing turns freely, and does not grow by rounding") {
+  const drev::test::TemporaryFolder folder;
+  const std::string path = (folder / "dashpot.toml").string();
+  std::ofstream(path) << "format = 1\n[nodes]\na = {}\nb = {}\n[elements]\n"
+                         "Ja = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+                         "Jb = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 0.5 }\n"
+                         "d = { type = \"dashpot\", nodes = [\"a\", \"b\"], damping_Nms_per_rad = 1 }\n";
+  const auto counted = drev_command({"modes", path, "--count", "1"});
+  CHECK(counted.exit_code == 2);
+  CHECK(contains(counted.err, "--count = 1, must be left out: the model has no elastic modes"));
+  const auto text = drev_command({"modes", path, "--damped"});
+  INFO(text.out << text.err);
+  CHECK(contains(text.out, "0 1/s: turns freely, without drag"));
+  CHECK(contains(text.out, "-3.000000 1/s: decays"));
+  CHECK_FALSE(contains(text.out, "grows"));
+  const Json real =
+      Json::parse(drev_command({"modes", path, "--damped", "--json"}).out).at("real_eigenvalues");
+  REQUIRE(real.size() == 2);
+  CHECK(real[0].at("turns_freely") == true);
+  CHECK(real[0].at("real_per_s") == 0.0);
+  CHECK(real[1].at("turns_freely") == false);
+}

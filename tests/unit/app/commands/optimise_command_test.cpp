@@ -177,6 +177,44 @@ TEST_CASE("What is wrong with an optimisation is said at once") {
   CHECK(contains(name.err, "--variants = 0"));
 }
 
+TEST_CASE("The least energy error is that of the least size, of either sign") {
+  const auto found =
+      drev_command({"optimise", "gear_drive", "--vary", "backlash_mm=0.05,0.15,0.25", "--minimise",
+                    "energy_error", "--step", "1e-4", "--duration", "0.05", "--json"});
+  INFO(found.out << found.err);
+  REQUIRE(found.exit_code == 0);
+  const Json best = Json::parse(found.out).at("best");
+  REQUIRE(best.size() == 3);
+  bool negative = false;
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    const double error = best[i].at("value").get<double>();
+    negative |= error < 0.0;
+    if (i > 0) CHECK(std::abs(error) > std::abs(best[i - 1].at("value").get<double>()));
+  }
+  CHECK(negative);
+  CHECK(best[2].at("value") > 0.0);
+}
+
+TEST_CASE("A distribution of a parameter that is a whole number is refused by the word that was typed") {
+  const TemporaryFolder folder;
+  const auto refused = [&](Words words) {
+    words.insert(words.end(),
+                 {"--duration", "0.01", "--vary", "cylinders=uniform(5.5,9)", "--set", "drive=held"});
+    const auto run = drev_command(words);
+    INFO(run.err);
+    CHECK(run.exit_code == 2);
+    CHECK(contains(run.err,
+                   "--vary = cylinders=uniform(5.5,9), cylinders is a whole number: give its values, "
+                   "cylinders=6:1:9"));
+    CHECK_FALSE(contains(run.err, "must be a whole number"));
+  };
+  refused({"optimise", "camshaft", "--minimise", "deflection_deg"});
+  refused({"run", "camshaft", "--sample", "lhs:4", "--out", (folder / "r").string()});
+  const auto choice = drev_command({"run", "camshaft", "--sample", "lhs:4", "--out", (folder / "c").string(),
+                                    "--duration", "0.01", "--vary", "drive=normal(1,1)"});
+  CHECK(contains(choice.err, "has a distribution of numbers, and drive is "));
+}
+
 TEST_CASE("An optimisation of a model that settles has its figures of the whole runs, with --settle 0") {
   const TemporaryFolder folder;
   const std::string file = absorber_file(folder);

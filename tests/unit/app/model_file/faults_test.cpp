@@ -249,6 +249,20 @@ TEST_CASE("All faults of a file are listed at once, each once") {
     CHECK(contains(said, part));
 }
 
+TEST_CASE("A column with a fault of its own is not said to be of another length, too") {
+  for (const char* table : {"time_s = [0, 1, 2], torque_Nm = [1, nan, 3]", "torque_Nm = [1, 2, 3]",
+                            "time_s = 3, torque_Nm = [1, 2, 3]"}) {
+    const std::string said = refusal(
+        "format = 1\n[nodes]\na = {}\n[elements]\nJ = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 "
+        "}\n"
+        "q = { type = \"applied_torque\", node = \"a\", table = { " +
+        std::string(table) + " } }\n");
+    INFO(table << "\nsaid: " << said);
+    CHECK(contains(said, "elements.q.table"));
+    CHECK(std::count(said.begin(), said.end(), '\n') == 0);
+  }
+}
+
 TEST_CASE("Faults of files that are included or read are named in those") {
   const test::TemporaryFolder folder;
   const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder / name) << text; };

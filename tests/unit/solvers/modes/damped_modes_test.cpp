@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "tests/catch.hpp"
 
@@ -86,6 +87,40 @@ TEST_CASE("A free chain without damping: the double zero does not split", "[damp
     CHECK(mode.lambda.real() == 0.0);
     CHECK(mode.damping_ratio == 0.0);
     CHECK_FALSE(std::signbit(mode.damping_ratio));
+  }
+}
+
+TEST_CASE("Trains that nothing ties to each other: no mode of a multiple real lambda", "[damped_modes]") {
+  // Rounding splits it into a pair +- 1e-16 i, at which the numbers chosen here did so.
+  Model model("two trains");
+  const auto train = [&](const std::string& name, const std::vector<double>& inertia,
+                         const std::vector<double>& stiffness, const std::vector<double>& damping) {
+    for (std::size_t i = 0; i < inertia.size(); ++i) {
+      const std::string node = name + std::to_string(i);
+      model.add_node(node);
+      model.add<Inertia>("J_" + node, {node}, {.inertia = inertia[i]});
+      if (i > 0)
+        model.add<ShaftSpring>("k_" + node, {name + std::to_string(i - 1), node},
+                               {.stiffness = stiffness[i - 1], .damping = damping[i - 1]});
+    }
+  };
+  SECTION("a double zero") {
+    train("a", {2.0, 0.5, 0.1}, {100.0, 1000.0}, {0.5, 1.0});
+    train("b", {3.0, 3.0, 2.0}, {100.0, 10.0}, {1.0, 0.3});
+    const DampedModeSet set = solve_damped_modes(model.build());
+    CHECK(set.rigid_modes == 2);
+    CHECK(set.modes.size() == 4);
+    REQUIRE(set.real_lambda.size() == 2);
+    for (const double lambda : set.real_lambda) CHECK(std::abs(lambda) < 1e-13);
+  }
+  SECTION("a double rate of decay") {
+    train("a", {2.0, 0.1}, {300.0}, {0.0});
+    train("b", {3.0, 2.0}, {300.0}, {0.0});
+    model.add<RayleighDamping>("rayleigh", {}, {.alpha_mass = 1.0, .beta_stiffness = 1e-3});
+    const DampedModeSet set = solve_damped_modes(model.build());
+    CHECK(set.modes.size() == 2);
+    REQUIRE(set.real_lambda.size() == 2);
+    for (const double lambda : set.real_lambda) CHECK(lambda == Approx(-1.0).epsilon(1e-12));
   }
 }
 
