@@ -216,13 +216,16 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   const auto least_of = [&](int row) { return unseen / (kNodeRest * relative_move(series, row)); };
   pass.contraction =
       std::max(pass.contraction, smooth_.project(series, first, projection_, of_kinks_, least_of));
-  smooth_.for_rounding(
-      [&](int row, double rounding) { rounding_[idx(row)] = std::max(rounding_[idx(row)], rounding); });
   if (!laws.empty()) {
     of_loads_ = projection_;
     if (kinked()) of_loads_ += of_kinks_;
     pass.contraction = std::max(pass.contraction, laws.project(series, projection_));
   }
+  const auto note_rounding = [&](int row, double rounding) {
+    rounding_[idx(row)] = std::max(rounding_[idx(row)], rounding);
+  };
+  smooth_.for_rounding(note_rounding);
+  laws.for_rounding(note_rounding);
   // Kinks apart: no polynomial of any degree holds them, and at the step's end they need none.
   const auto moves = [&](double force, int row) {
     return force > 0.0 ? force * relative_move(series, row) : 0.0;

@@ -5,11 +5,13 @@
 
 #include "solvers/contact/roots.hpp"
 #include "solvers/exact/expanded_laws.hpp"
+#include "solvers/run/cubic_peak.hpp"
 
 namespace drev {
 
 namespace {
-constexpr double kRounding = 2e-14;  // rounding of the last coefficients, relative to the largest
+constexpr double kLawRounding = 1e-15;  // of a force, a deflection and its rate, relative to them
+constexpr double kRounding = 2e-14;     // rounding of the last coefficients, relative to the largest
 // An angle is clear of a knot, relative to the angle and to 1 rad at least.
 constexpr double kAngleClear = 2e-15;
 }  // namespace
@@ -21,7 +23,6 @@ ProjectedLaws::ProjectedLaws(const System& system)
     if (!linear_pieces(term).empty() || ExpandedLaws::takes(term)) continue;
     laws_.push_back({.index = static_cast<int>(j), .term = &term});
     if (term.phase_node >= 0) laws_.back().phase_row = system.row_of(term.phase_node);
-    for (const Entry& e : term.z) rows_.push_back(e.index);
   }
 }
 
@@ -62,30 +63,84 @@ void ProjectedLaws::expand_scale(int law, const TaylorSeries& series, std::vecto
   scale.assign(polynomial.power.begin(), polynomial.power.end());
 }
 
+/// A law on the series' path, where z_ and v_ stand.
+struct ProjectedLaws::Point {
+  ScalarResponse response;
+  double x = 0.0, x_dot = 0.0, beyond = 0.0;  // its tangent
+};
+
+ProjectedLaws::Point ProjectedLaws::look(const Law& law) {
+  Point p{.response = assembler_.respond(*law.term, z_, v_),
+          .x = value_along(law.term->z, z_),
+          .x_dot = value_along(law.term->z, v_)};
+  p.beyond = p.response.y - law.y - law.k * (p.x - law.x) - law.c * (p.x_dot - law.x_dot);
+  return p;
+}
+
 double ProjectedLaws::project(const TaylorSeries& series, LegendreProjection& projection) {
   if (laws_.empty()) return 0.0;
   const GaussRule& rule = gauss_rule();
   double gain = 0.0;
   forces_.clear();
+  for (Law& law : laws_) law.rounding = 0.0;
   for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
     series.evaluate(rule.s[q], z_, v_);
     assembler_.set_time(t_ + h_ * rule.s[q]);
-    for (const Law& law : laws_) {
-      const ScalarTerm& term = *law.term;
-      const ScalarResponse r = assembler_.respond(term, z_, v_);
-      const double difference = r.y - law.y - law.k * (value_along(term.z, z_) - law.x) -
-                                law.c * (value_along(term.z, v_) - law.x_dot);
+    for (Law& law : laws_) {
+      const Point p = look(law);
+      const ScalarResponse& r = p.response;
+      law.at_nodes[q] = p.beyond;
+      law.rounding = std::max(law.rounding, kLawRounding * (std::abs(r.y) + std::abs(r.dy_dx * p.x) +
+                                                            std::abs(r.dy_dx_dot * p.x_dot)));
       double mobility = 0.0;
-      for (const Entry& e : term.z) {
+      for (const Entry& e : law.term->z) {
         mobility += e.coeff * e.coeff * series.mobility(e.index);
-        forces_.at(q, e.index) -= e.coeff * difference;
+        forces_.at(q, e.index) -= e.coeff * p.beyond;
       }
       gain = std::max(
           gain, mobility * (0.5 * h_ * h_ * std::abs(r.dy_dx - law.k) + h_ * std::abs(r.dy_dx_dot - law.c)));
     }
   }
   projection.add_nodes(forces_);
+  look_between(series);
   return gain;
+}
+
+void ProjectedLaws::look_between(const TaylorSeries& series) {
+  const GaussRule& rule = gauss_rule();
+  for (Law& law : laws_) law.off = std::abs(NodeFit(law.at_nodes).at(0.0));
+  const auto stand = [&](double s) {
+    series.evaluate(s, z_, v_);
+    assembler_.set_time(t_ + h_ * s);
+  };
+  const auto take = [&](Law& law, double s) {
+    const Point p = look(law);
+    law.off = std::max(law.off, std::abs(p.beyond - NodeFit(law.at_nodes).at(s)));
+    return p;
+  };
+  std::vector<Point> last;
+  for (const Law& law : laws_) last.push_back({.response = {}, .x = law.x, .x_dot = law.x_dot});
+  double s_last = 0.0;
+  for (std::size_t i = 0; i <= GaussRule::kNodes; ++i) {
+    const double s = i == 0                  ? 0.5 * rule.s[0]
+                     : i < GaussRule::kNodes ? 0.5 * (rule.s[i - 1] + rule.s[i])
+                                             : GaussRule::kAheadOfEnd;
+    stand(s);
+    for (std::size_t j = 0; j < laws_.size(); ++j) {
+      Law& law = laws_[j];
+      const Point p = take(law, s);
+      const double length = (s - s_last) * h_;
+      // A stop may be reached just where the deflection turns.
+      if (const auto turn = cubic_peak(last[j].x, last[j].x_dot, p.x, p.x_dot, length)) {
+        const double at = s_last + turn->s * (s - s_last);
+        stand(at);
+        take(law, at);
+        stand(s);
+      }
+      last[j] = p;
+    }
+    s_last = s;
+  }
 }
 
 std::optional<double> ProjectedLaws::first_knot(const TaylorSeries& series, double end) {

@@ -7,6 +7,8 @@
 /// of the law (a stiffness that steps).
 #include <drev/solvers/run/evaluated_state.hpp>
 
+#include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -27,10 +29,18 @@ class ProjectedLaws {
   /// Adds the differences along the series' path, on the right side; returns how much of a change of the
   /// path comes back.
   double project(const TaylorSeries& series, LegendreProjection& projection);
-  /// Calls judge(row, 0) for every row on which such a law acts: as SmoothLoads::for_rows(). Laws say where they kink.
+  /// Calls judge(row, off) for every row on which such a law acts: as SmoothLoads::for_rows(). A law is to say where it kinks; one
+  /// that does not is looked at between the nodes, at the ends of the step and where its deflection turns.
   template <class Judge>
   void for_rows(const Judge& judge) const {
-    for (const int row : rows_) judge(row, 0.0);
+    for (const Law& law : laws_)
+      for (const Entry& e : law.term->z) judge(e.index, std::abs(e.coeff) * law.off);
+  }
+  /// As SmoothLoads::for_rounding().
+  template <class Note>
+  void for_rounding(const Note& note) const {
+    for (const Law& law : laws_)
+      for (const Entry& e : law.term->z) note(e.index, std::abs(e.coeff) * law.rounding);
   }
 
   /// Series of how the pieces of the law are scaled by its angle along the path (ScalarForce::pieces_scale).
@@ -52,12 +62,16 @@ class ProjectedLaws {
     double k = 0.0, c = 0.0;
     double y = 0.0, x = 0.0, x_dot = 0.0;  // y and b^T z, b^T v at the start
     double angle = 0.0, stored = 0.0;
+    std::array<double, GaussRule::kNodes> at_nodes{};  // beyond its tangent, as all these
+    double off = 0.0, rounding = 0.0;
   };
+  struct Point;
+  Point look(const Law& law);
+  void look_between(const TaylorSeries& series);
 
   const System& system_;
   Assembler assembler_;
   std::vector<Law> laws_;
-  std::vector<int> rows_;
   std::vector<double> g_;
   NodeForces forces_;
   Vector z_, v_;

@@ -83,14 +83,7 @@ class SmoothLoads::Between {
  public:
   using AtNodes = std::array<double, GaussRule::kNodes>;
   Between(const SmoothLoads& of, const Place& load, const TaylorSeries& series, const AtNodes& at_nodes)
-      : of_(of), load_(load), series_(series) {
-    const GaussRule& rule = gauss_rule();
-    for (std::size_t j = 0; j < a_.size(); ++j) {
-      for (std::size_t q = 0; q < at_nodes.size(); ++q)
-        a_[j] += rule.weight[q] * rule.legendre[j][q] * at_nodes[q];
-      a_[j] *= 2.0 * static_cast<double>(j) + 1.0;
-    }
-  }
+      : of_(of), load_(load), series_(series), fit_(at_nodes) {}
 
   Point look(double s) const {
     double along = 0.0, rate = 0.0;
@@ -165,22 +158,14 @@ class SmoothLoads::Between {
 
   Point take(const Point& p) {
     ++looks_;
-    const double x = 2.0 * p.s - 1.0;
-    double projected = 0.0, now = 1.0, before = 0.0;
-    for (std::size_t j = 0; j < a_.size(); ++j) {
-      projected += a_[j] * now;
-      const double k = static_cast<double>(j), next = ((2.0 * k + 1.0) * x * now - k * before) / (k + 1.0);
-      before = now;
-      now = next;
-    }
-    off_ = std::max(off_, std::abs(p.beyond - projected));
+    off_ = std::max(off_, std::abs(p.beyond - fit_.at(p.s)));
     return p;
   }
 
   const SmoothLoads& of_;
   const Place& load_;
   const TaylorSeries& series_;
-  std::array<double, kProjectionTerms> a_{};  // of the load alone
+  NodeFit fit_;  // of the load alone
   double off_ = 0.0;
   int looks_ = 0;
 };

@@ -73,6 +73,33 @@ struct NodePolynomial {
 /// rounding: of the values; what bends by no more is left out, since powers of s would carry it far.
 NodePolynomial through_nodes(const std::array<double, GaussRule::kNodes>& values, double rounding);
 
+/// One force's projection from its values at the nodes, to be asked between them.
+class NodeFit {
+ public:
+  explicit NodeFit(const std::array<double, GaussRule::kNodes>& values) {
+    const GaussRule& rule = gauss_rule();
+    for (std::size_t j = 0; j < a_.size(); ++j) {
+      for (std::size_t q = 0; q < values.size(); ++q)
+        a_[j] += rule.weight[q] * rule.legendre[j][q] * values[q];
+      a_[j] *= 2.0 * static_cast<double>(j) + 1.0;
+    }
+  }
+  double at(double s) const {
+    const double x = 2.0 * s - 1.0;
+    double sum = 0.0, now = 1.0, before = 0.0;
+    for (std::size_t j = 0; j < a_.size(); ++j) {
+      sum += a_[j] * now;
+      const double k = static_cast<double>(j), next = ((2.0 * k + 1.0) * x * now - k * before) / (k + 1.0);
+      before = now;
+      now = next;
+    }
+    return sum;
+  }
+
+ private:
+  std::array<double, kProjectionTerms> a_{};
+};
+
 /// Forces by node of Gauss's rule and row.
 class NodeForces {
  public:
