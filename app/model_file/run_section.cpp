@@ -6,6 +6,7 @@
 #include <drev/elements/not_given.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 #include <unordered_set>
@@ -20,19 +21,25 @@ using D = Dimension;
 
 constexpr std::size_t kMostNodesRecorded = 20;
 
-/// What springs, shafts and meshes carry, in one unit: torques, or forces where there are no torques. A load, and the
-/// torque of a governor, act on the train; they are none of them.
+/// What shafts, springs, couplings, meshes and dampers between nodes carry, in one unit: torques, or forces where there are no
+/// torques. A load, the torque of a governor, and what drags on a single node act on the train; they are none of them.
 std::vector<std::string> carried(const System& system) {
+  constexpr std::array<std::string_view, 4> kDrag{"dashpot", "absolute damper", "bearing friction", "brake"};
   std::unordered_map<std::string, std::string_view> types;
-  for (const ElementInstance& placement : system.element_instances())
-    types[placement.name] = placement.element->type();
+  std::unordered_set<std::string> acts;
+  for (const ElementInstance& placement : system.element_instances()) {
+    const std::string_view type = types[placement.name] = placement.element->type();
+    const bool drag =
+        placement.nodes.size() == 1 && std::find(kDrag.begin(), kDrag.end(), type) != kDrag.end();
+    if (drag || type == "speed governor") acts.insert(placement.name);
+  }
   std::unordered_set<std::string> loads;
   for (const LoadTerm& load : system.loads())
     loads.insert(system.element_instances()[static_cast<std::size_t>(index(load.element))].name +
                  (load.suffix.empty() ? "" : "_" + load.suffix));
   const auto carries = [&](const std::string& object) {
-    if (loads.contains(object)) return false;
-    if (const auto whole = types.find(object); whole != types.end()) return whole->second != "speed governor";
+    if (loads.contains(object) || acts.contains(object)) return false;
+    if (types.contains(object)) return true;
     const auto segments = types.find(object.substr(0, object.rfind('_')));
     return segments != types.end() &&
            (segments->second == "distributed shaft" || segments->second == "contour shaft");

@@ -315,11 +315,15 @@ std::string warning_of(const RunResult& r) {
 
 std::vector<std::string> notes_of(const RunResult& r) {
   std::vector<std::string> notes;
-  if (const PartSpeed* part = r.off_speed())
-    notes.push_back("the model turns at " + speed_text(part->actual) + " on the mean, not at the nominal " +
-                    speed_text(part->nominal) + " (" + digits(100.0 * part->deviation(), 3) +
-                    " %): only a balance of torques holds the speed of the part with " + part->node +
-                    "; orders are per turn at the actual speed");
+  if (const PartSpeed* part = r.off_speed()) {
+    const bool nominal = r.run_up && r.run_up->orders.shaft.empty();  // run_up.hpp
+    notes.push_back(
+        "the model turns at " + speed_text(part->actual) + " on the mean, not at the nominal " +
+        speed_text(part->nominal) + " (" + digits(100.0 * part->deviation(), 3) +
+        " %): only a balance of torques holds the speed of the part with " + part->node +
+        (nominal ? "; orders over the run-up are per turn at the nominal speed, which the loads follow"
+                 : "; orders are per turn at the actual speed"));
+  }
   return notes;
 }
 

@@ -75,7 +75,10 @@ class FrictionProblem {
     }
     const double nothing = kRounding * (1.0 + (nz > 0 ? lambda_z.cwiseAbs().maxCoeff() : 0.0));
     m = (m.array().abs() > nothing).select(m, 0.0);
-    const auto found = q.allFinite() && m.allFinite() ? solve_complementarity(m, q) : std::nullopt;
+    const bool finite = q.allFinite() && m.allFinite();
+    auto found = finite ? solve_complementarity(m, q) : std::nullopt;
+    // M is not copositive where a self-locking gear's load is heavy: Lemke's method may end on a ray beside a solution.
+    if (!found && finite) found = try_every_set(m, q, at_rest_set());
     if (!found)
       throw SolverError(
           "the torques of dry friction and lossy gears have no solution at this instant: a self-locking gear "
@@ -129,7 +132,16 @@ class FrictionProblem {
     int free = -1;
   };
 
-  bool at_rest(const GearLossRow& g) const { return g.turns == 0; }
+  /// Which variables are basic where nothing at rest moves; that of lines does not matter.
+  std::vector<char> at_rest_set() const {
+    constexpr char kAny = 2;
+    std::vector<char> basic(static_cast<std::size_t>(variables_), kAny);
+    const auto put = [&](int variable, char value) {
+      if (variable >= 0) basic[static_cast<std::size_t>(variable)] = value;
+    };
+    for (const Variables& v : of_) put(v.below_high, 1), put(v.above_low, 1), put(v.backward, 0);
+    return basic;
+  }
   void count() {
     scale_.resize(n_);
     for (Eigen::Index i = 0; i < n_; ++i) scale_[i] = p_.w(i, i) > 0.0 ? 1.0 / std::sqrt(p_.w(i, i)) : 1.0;

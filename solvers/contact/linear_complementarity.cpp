@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
 namespace {
 
-constexpr double kPivot = 1e-11;  // smallest pivot over the largest entry of M: smaller ones are rounding
-constexpr double kSame = 1e-12;   // relative difference of ratios that are equal except for rounding
-constexpr int kTries = 4;         // tries with other artificial columns
+constexpr double kPivot = 1e-11;    // smallest pivot over the largest entry of M: smaller ones are rounding
+constexpr double kSame = 1e-12;     // relative difference of ratios that are equal except for rounding
+constexpr int kTries = 4;           // tries with other artificial columns
+constexpr double kNothing = 1e-12;  // a sum over the largest of its terms that is rounding
 
 /// Rows w - M z - 1 z_0 = q; columns w, z, z_0, q.
 class Lemke {
@@ -99,6 +103,47 @@ std::optional<ComplementarySolution> solve_complementarity(const Eigen::MatrixXd
                                                            const Eigen::VectorXd& q) {
   for (int number = 0; number < kTries; ++number)
     if (auto found = Lemke(m, q, number).solve()) return found;
+  return std::nullopt;
+}
+
+std::optional<ComplementarySolution> try_every_set(const Eigen::MatrixXd& m, const Eigen::VectorXd& q,
+                                                   const std::vector<char>& wanted) {
+  const auto n = static_cast<int>(q.size());
+  if (n > kMostTried) return std::nullopt;
+  const auto bit = [](int set, int i) { return static_cast<char>(set >> i & 1); };
+  std::vector<std::pair<int, int>> sets;  // places that differ, set
+  for (int set = 0; set < 1 << n; ++set) {
+    int differ = 0;
+    for (int i = 0; i < n; ++i)
+      if (const char w = wanted[static_cast<std::size_t>(i)]; w == 0 || w == 1) differ += w != bit(set, i);
+    sets.emplace_back(differ, set);
+  }
+  std::sort(sets.begin(), sets.end());
+  for (const auto& [differ, set] : sets) {
+    ComplementarySolution found{Eigen::VectorXd::Zero(n), {}};
+    std::vector<Eigen::Index> basic;
+    for (int i = 0; i < n; ++i) {
+      found.basic.push_back(bit(set, i));
+      if (bit(set, i) == 1) basic.push_back(i);
+    }
+    if (!basic.empty()) {
+      const Eigen::MatrixXd rows = m(basic, basic);
+      const Vector right = -q(basic);
+      found.z(basic) = lu_solve(rows, right);
+    }
+    if (!found.z.allFinite()) continue;
+    const Eigen::VectorXd w = m * found.z + q, terms = m.cwiseAbs() * found.z.cwiseAbs() + q.cwiseAbs();
+    const double largest = found.z.size() > 0 ? found.z.cwiseAbs().maxCoeff() : 0.0;
+    bool holds = true;
+    for (int i = 0; i < n; ++i) {
+      const double slack = kNothing * terms[i];
+      holds = holds && (bit(set, i) == 1 ? std::abs(w[i]) <= slack && found.z[i] >= -kNothing * largest
+                                         : w[i] >= -slack);
+    }
+    if (!holds) continue;
+    found.z = found.z.cwiseMax(0.0);
+    return found;
+  }
   return std::nullopt;
 }
 

@@ -22,5 +22,10 @@ struct ComplementarySolution {
 /// nullopt: the method ends on a ray, so that there is no solution or M is none of the matrices above.
 std::optional<ComplementarySolution> solve_complementarity(const Eigen::MatrixXd& m,
                                                            const Eigen::VectorXd& q);
+/// The same by trying every set of basic variables, whatever M is: those first that differ at the fewest places from `wanted`, 0 or 1 by
+/// variable, any other number where it does not matter. nullopt: there is no solution, or more than kMostTried variables.
+inline constexpr int kMostTried = 12;
+std::optional<ComplementarySolution> try_every_set(const Eigen::MatrixXd& m, const Eigen::VectorXd& q,
+                                                   const std::vector<char>& wanted);
 
 }  // namespace drev

@@ -376,12 +376,33 @@ ExpandedLoads::Values ExpandedLoads::values(const double* terms, int degree, std
   return v;
 }
 
+/// The part of swept_work() of a load whose angle follows no motion, which may turn far in a step: int p y' by Gauss's nodes.
+double ExpandedLoads::given_work(const Group& group, std::size_t lane, const Load& l,
+                                 const TaylorSeries& series, double s) const {
+  const GaussRule& rule = gauss_rule();
+  NodeValues y;
+  series.swept_at_nodes({{l.row, l.coeff}}, s, y);
+  double sum = 0.0;
+  for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+    const Values x = values(group.x.data(), 2, lane, s * rule.s[q]);
+    double torque = values(group.p.data(), group.top, lane, x.value).value;
+    if (group.speeds)
+      torque += values(group.g.data(), group.top, lane, x.value).value * (x.slope / h_) * (x.slope / h_);
+    sum += s * rule.weight[q] * torque * y.slope[q];
+  }
+  return sum;
+}
+
 double ExpandedLoads::swept_work(const TaylorSeries& series, double s) const {
   const double *y = series.swept(0), *y_sum = series.swept(1), *y_sum_2 = series.swept(2);
   double sum = 0.0;
   for (const Group& group : groups_)
     for (std::size_t lane = 0; lane < idx(group.count); ++lane) {
       const Load& l = loads_[idx(group.load[lane])];
+      if (!l.feedback) {
+        sum += given_work(group, lane, l, series, s);
+        continue;
+      }
       const Values x = values(group.x.data(), series.degree(), lane, s);
       const Values along = values(group.along.data(), series.degree(), lane, s);
       const Values p = values(group.p.data(), group.top, lane, x.value);
@@ -395,7 +416,6 @@ double ExpandedLoads::swept_work(const TaylorSeries& series, double s) const {
       // int p y' by parts; and what y changes of p, on z' and y'.
       const double y_s = l.coeff * y[row], sum_1 = l.coeff * y_sum[row], sum_2 = l.coeff * y_sum_2[row];
       sum += torque * y_s - rate * sum_1 + rate_2 * sum_2;
-      if (!l.feedback) continue;
       sum += slope * (along.slope * sum_1 - along.bend * sum_2 + 0.5 * y_s * y_s);
       sum += by_speed * (along.slope * y_s - along.bend * sum_1);
     }

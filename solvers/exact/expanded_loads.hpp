@@ -120,6 +120,8 @@ class ExpandedLoads final : public TermForces {
     double value = 0.0, slope = 0.0, bend = 0.0;
   };
   static Values values(const double* terms, int degree, std::size_t lane, double s);
+  double given_work(const Group& group, std::size_t lane, const Load& l, const TaylorSeries& series,
+                    double s) const;
 
   const System& system_;
   std::vector<Load> loads_;

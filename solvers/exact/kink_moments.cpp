@@ -305,6 +305,18 @@ KinkMoments::Force KinkMoments::force(int i, double behind) const {
   return f;
 }
 
+void KinkMoments::force_terms(int i, const std::array<double, 3>& behind, std::span<double> terms) const {
+  const double* force = force_.data() + idx_of(i) / kLanes * kForce + idx_of(i) % kLanes;
+  std::fill(terms.begin(), terms.end(), 0.0);
+  for (std::size_t q = powers_; q-- > 0;) {  // Horner's rule on series
+    terms[0] += force[q * kLanes];
+    for (std::size_t k = terms.size(); k-- > 0;) {
+      terms[k] *= behind[0];
+      for (std::size_t j = 1; j <= std::min<std::size_t>(k, 2); ++j) terms[k] += behind[j] * terms[k - j];
+    }
+  }
+}
+
 void KinkMoments::add_to(LegendreProjection& projection) {
   if (count_ == 0) return;
   static const NodesAndWeights<kMomentNodes> rule;

@@ -65,6 +65,8 @@ class KinkMoments {
     double value = 0.0, slope = 0.0, integral = 0.0;
   };
   Force force(int i, double behind) const;
+  /// The first terms of f by powers of s - s_0, where theta - knot has these three about s_0.
+  void force_terms(int i, const std::array<double, 3>& behind, std::span<double> terms) const;
 
  private:
   enum Quantity { kKnot, kEnd, kAngle, kRatio, kTurn, kPerTurn, kSlope, kPlace, kQuantities };

@@ -225,11 +225,16 @@ double LoadSeries::given_kink_work(const TaylorSeries& series, int kink, double 
     sum += rule.weight[q] * length * kinks_.force(kink, turn + l.ratio * s * (phi_[1] + s * phi_[2])).value *
            rate;
   }
-  const KinkMoments::Force at_end = kinks_.force(kink, kinks_.end(kink) - kinks_.knot(kink));
-  return sum + at_end.value * series.swept(0)[l.row] -
-         at_end.slope * l.ratio *
-             ((phi_[1] + 2.0 * end * phi_[2]) * series.swept(1)[l.row] -
-              2.0 * phi_[2] * series.swept(2)[l.row]);
+  // int f y' ds = sum_k (-1)^k f^(k)(e) int (e - s)^k/k! y' ds, by parts: y moves before the knot only where other rows' kinks do.
+  std::array<double, TaylorSeries::kSweptParts> terms;
+  kinks_.force_terms(
+      kink,
+      {kinks_.end(kink) - kinks_.knot(kink), l.ratio * (phi_[1] + 2.0 * end * phi_[2]), l.ratio * phi_[2]},
+      terms);
+  double factor = 1.0;  // (-1)^k k!
+  for (int k = 0; k < TaylorSeries::kSweptParts; factor *= -static_cast<double>(++k))
+    sum += factor * terms[idx(k)] * series.swept(k)[l.row];
+  return sum;
 }
 
 double LoadSeries::kink_work(const TaylorSeries& series, double s) const {

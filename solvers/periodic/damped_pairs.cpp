@@ -2,7 +2,9 @@
 
 #include <drev/core/assembler.hpp>
 
+#include <Eigen/QR>
 #include <cmath>
+#include <vector>
 
 namespace drev {
 
@@ -12,6 +14,8 @@ using Complex = std::complex<double>;
 
 constexpr int kMostSteps = 25;
 constexpr double kPairSettled = 1e-12;  // last change of lambda relative to lambda [-]
+// Difference of lambda relative to it below which shapes are any of their common space [-], and the part of N that is rounding there.
+constexpr double kCoincide = 1e-7, kSameShape = 1e-6;
 
 /// The product A x, with A given by its values on the pattern.
 Eigen::VectorXcd pair_product(const SparseMatrix& pattern, const Vector& values, const Eigen::VectorXcd& x) {
@@ -57,6 +61,28 @@ bool DampedPairs::refine(const Vector& damping, Complex& lambda, Eigen::VectorXc
     if (moved <= kPairSettled * std::abs(lambda)) return true;
   }
   return false;
+}
+
+Eigen::VectorXcd DampedPairs::residue(const Vector& damping, const Eigen::VectorXcd& lambda,
+                                      const Eigen::MatrixXcd& shapes, Eigen::Index mode,
+                                      const Eigen::VectorXcd& p) const {
+  std::vector<Eigen::Index> coincide;
+  for (Eigen::Index j = 0; j < lambda.size(); ++j)
+    if (std::abs(lambda[j] - lambda[mode]) <= kCoincide * std::abs(lambda[mode])) coincide.push_back(j);
+  const Eigen::VectorXcd poles = lambda(coincide);
+  const Eigen::MatrixXcd x = shapes(Eigen::all, coincide).colwise().normalized();
+  Eigen::MatrixXcd n(x.cols(), x.cols());
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    const Eigen::VectorXcd of_mass = pair_product(pattern_, mass_, x.col(j)),
+                           of_damping = pair_product(pattern_, damping, x.col(j));
+    for (Eigen::Index i = 0; i < x.cols(); ++i)
+      n(i, j) = (x.col(i).transpose() * ((poles[i] + poles[j]) * of_mass + of_damping))(0, 0);
+  }
+  // Two of the shapes may be the same one.
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXcd> inverse;
+  inverse.setThreshold(kSameShape);
+  inverse.compute(n);
+  return x * inverse.solve(x.transpose() * p);
 }
 
 }  // namespace drev

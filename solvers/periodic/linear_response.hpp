@@ -35,6 +35,12 @@ class LinearResponse {
   void vibration(double speed, Point& point, int only = -1);
   /// Throws SolverError where the static stiffness is singular although no part floats.
   void mean(double speed, Point& point);
+  /// Right side of the one order that vibration() solved last, and the sections' amplitudes where z is the motion there; both as
+  /// if the reference shaft turned forwards.
+  Eigen::VectorXcd forces() const;
+  Eigen::RowVectorXcd amplitudes_of(const Eigen::VectorXcd& z);
+  /// Sign of the reference shaft's speed: backwards amplitudes are complex conjugates.
+  double direction() const { return direction_; }
 
   const std::vector<Section>& sections() const { return sections_; }
   const std::vector<std::string>& floating() const { return mean_->floating(); }

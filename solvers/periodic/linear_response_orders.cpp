@@ -123,6 +123,31 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
   }
 }
 
+Eigen::VectorXcd LinearResponse::forces() const {
+  Eigen::VectorXcd p = Eigen::VectorXcd::Zero(system_.size());
+  if (active_.empty()) return p;
+  for (std::size_t i = 0; i < z_.size(); ++i)
+    p[static_cast<Eigen::Index>(i)] = {p_re_[i * kLaneSets].v[0], direction_ * p_im_[i * kLaneSets].v[0]};
+  return p;
+}
+
+Eigen::RowVectorXcd LinearResponse::amplitudes_of(const Eigen::VectorXcd& z) {
+  Eigen::RowVectorXcd found = Eigen::RowVectorXcd::Zero(static_cast<Eigen::Index>(sections_.size()));
+  if (active_.empty()) return found;
+  for (std::size_t i = 0; i < z_.size(); ++i) {
+    const Complex value = z[static_cast<Eigen::Index>(i)];
+    re_[i * kLaneSets] = im_[i * kLaneSets] = {};
+    re_[i * kLaneSets].v[0] = value.real();
+    im_[i * kLaneSets].v[0] = direction_ * value.imag();
+  }
+  rows_->find(1, {p_re_.data(), p_im_.data(), re_.data(), im_.data(), w_.data()}, beyond_re_, beyond_im_);
+  for (std::size_t s = 0; s < sections_.size(); ++s) {
+    const Complex torque = *rows_->torques(s);
+    found[static_cast<Eigen::Index>(s)] = {torque.real(), direction_ * torque.imag()};
+  }
+  return found;
+}
+
 void LinearResponse::add_twist_squares(int used) {
   twist_squares_.resize(carried_.size());
   for (std::size_t t = 0; t < carried_.size(); ++t)

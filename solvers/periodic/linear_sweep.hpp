@@ -103,10 +103,10 @@ struct SweepCritical {
   int section = 0;
   double amplitude = 0.0;   ///< amplitude of the order in `section` at that speed; infinite: nothing damps it
   double half_range = 0.0;  ///< half range of `section` at that speed
-  /// The mode's own part of that amplitude: |r| / |Re lambda| of the pole r / (i o w - lambda), without what other modes
-  /// and the quasi-static torque add. Infinite: nothing damps it.
+  /// The mode's own part of that amplitude: of the motion r / |Re lambda| with its residue r, without what other modes and
+  /// the quasi-static torque add. Infinite: nothing damps it.
   double own_amplitude = 0.0;
-  /// For each section the speed as `speed` is for `section`, from the pole and a straight line for the rest; where the
+  /// For each section the speed as `speed` is for `section`, from the pole and a parabola for the rest; where the
   /// mode's own part is below a tenth of the amplitude, speed at which the order meets the mode. Empty: not known.
   std::vector<double> section_speeds = {};
 };

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/dense/factorization.hpp"
 
@@ -86,6 +87,13 @@ bool OrderTracking::has_begun(double angle) {
   return false;
 }
 
+/// Whether the nominal speed has another sign than it had when it was last not zero.
+bool OrderTracking::reverses_to(double rate) {
+  if (rate == 0.0) return false;
+  const double before = std::exchange(way_, rate < 0.0 ? -1.0 : 1.0);
+  return before * way_ < 0.0;
+}
+
 void OrderTracking::open(double begin) {
   next_ = begin + spacing_;
   windows_.push_back({.begin = begin,
@@ -102,6 +110,8 @@ void OrderTracking::start(const Assembler& assembler, const EvaluatedState& poin
   tracks_.first_speed = std::abs(rate);
   first_angle_ = angle;
   first_time_ = point.state.t;
+  way_ = 0.0;
+  reverses_to(rate);
   interval_ = 0.0;
   windows_.clear();
   look(assembler, point);
@@ -120,6 +130,7 @@ void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*fro
     if (sense_ != 0.0) open(turned_);
     return;
   }
+  const bool reverses = node_ < 0 && reverses_to(assembler.nominal().rate);
   // For a nominal angle the sense at the start need not be known.
   turned_ += node_ < 0 ? std::abs(angle - angle_) : sense_ * (angle - angle_);
   std::swap(values_, last_values_);
@@ -131,6 +142,7 @@ void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*fro
   if (dphi == 0.0 && dt == 0.0) return;
   while (turned_ >= next_) open(next_);
   for (Window& window : windows_) {
+    window.reverses = window.reverses || reverses;
     const auto weight = [&](double turned) {
       const double s = (turned - window.begin) / width_;
       return s > 0.0 && s < 1.0 ? std::pow(std::sin(0.5 * kTwoPi * s), 2) : 0.0;
@@ -190,7 +202,7 @@ OrderTracking::Complex OrderTracking::beside_trend(const Window& window, std::si
 }
 
 void OrderTracking::close(const Window& window) {
-  if (!(window.weights > 0.0) || !(window.time > 0.0)) return;
+  if (window.reverses || !(window.weights > 0.0) || !(window.time > 0.0)) return;
   tracks_.time.push_back(window.moment / window.time);
   tracks_.speed.push_back(window.weights / window.time);
   std::size_t place = 0;

@@ -6,8 +6,9 @@
 ///   A_o exp(i p_o) = 2 int w(phi) y exp(-i o phi) dphi / int w dphi,   w = sin^2(pi (phi - phi_a) / W)
 ///
 /// In a window, y is about A_o cos(o phi + p_o). phi is counted in the sense in which the shaft turns at the
-/// start. An actual angle that starts at rest is counted in the sense in which it has first turned by kBegun
-/// turns, where the first window begins. Where a shaft turns back, its angle decreases: the integrals are
+/// start; behind a reversal of a nominal angle in the other sense, and windows that hold the reversal are left out. An actual
+/// angle that starts at rest is counted in the sense in which it has first turned by kBegun
+/// turns, where the first window begins. Where its shaft turns back, an actual angle decreases: the integrals are
 /// those over the angle. Windows have the length W, and each begins half a window after the last one (Hann
 /// window in the angle). An order that the channel contains with a constant amplitude is found exactly;
 /// another order o' does not leak into it where (o - o') W / (2 pi) is an integer of at least 2. A freely
@@ -75,6 +76,7 @@ class OrderTracking final : public Observer {
     double begin = 0.0;                              ///< angle turned at its begin [rad]
     double weights = 0.0, time = 0.0, moment = 0.0;  ///< int w dphi, int w dt, int w t dt
     std::vector<Complex> sums;                       ///< int w y exp(-i o phi) dphi of channels and orders
+    bool reverses = false;                           ///< the nominal speed changes its sign in it
     // With t counted from t_0. moments: int w t^k dphi; trends: int w t^k y dphi of each channel that grows;
     // waves: int w t^k exp(-i o phi) dphi of each order.
     double t_0 = 0.0;
@@ -91,6 +93,7 @@ class OrderTracking final : public Observer {
   /// The angle phi and its speed [rad, rad/s].
   std::pair<double, double> turning(const Assembler& assembler, const EvaluatedState& point) const;
   bool has_begun(double angle);
+  bool reverses_to(double rate);
 
   std::vector<Channel> channels_;
   std::vector<int> trend_of_;  // place of each channel in Window::trends; -1: the channel does not grow
@@ -100,6 +103,7 @@ class OrderTracking final : public Observer {
   int node_ = -1;       // node whose actual angle is phi; -1: phi is the nominal angle
   double sense_ = 1.0;  // sense in which an actual angle is counted, 1 or -1; 0: not known yet
   double first_angle_ = 0.0, first_time_ = 0.0;
+  double way_ = 0.0;   // sign of the nominal speed when it was last not 0
   double next_ = 0.0;  // angle turned at the begin of the next window [rad]
   double angle_ = 0.0, turned_ = 0.0, time_ = 0.0, interval_ = 0.0;
   std::vector<double> values_, last_values_;

@@ -80,7 +80,7 @@ void note_growth(const SweepModes& modes, Eigen::Index i, const Growth& here, Li
 }
 
 SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds,
-                        const std::function<void()>& pause, LinearSweep& sweep) {
+                        const std::function<void()>& pause, LinearSweep& sweep, DampedPoles& poles) {
   const bool follows = damping_follows(system, response, speeds);
   const int count = follows ? kModeSpeeds : 1;
   SweepModes modes;
@@ -103,6 +103,12 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
       modes.lambda(mode, i) = set.modes[static_cast<std::size_t>(to[m])].lambda;
       shapes.col(mode) = set.shapes.col(to[m]);
     }
+    poles.damping.push_back(poles.pairs.damping() + load_damping(system, modes.speeds[i]));
+    poles.lambda.emplace_back(modes.lambda.col(i));
+    Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), shapes.cols());
+    for (int node = 0; node < system.node_count(); ++node)
+      if (const NodeMap& map = system.node_map(node); map.unknown >= 0)
+        of_unknowns.row(map.unknown) = shapes.row(node) / map.coeff;
   }
   return modes;
 }
@@ -111,7 +117,8 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
 /// iterated to its damped mode (damped_pairs.hpp). Modes that do not converge, or that converge to one
 /// already found, are 0.
 SweepModes follow_pairs(const System& system, LinearResponse& response, const std::vector<double>& speeds,
-                        double highest, const std::function<void()>& pause, LinearSweep& sweep) {
+                        double highest, const std::function<void()>& pause, LinearSweep& sweep,
+                        DampedPoles& poles) {
   const bool follows = damping_follows(system, response, speeds);
   const int columns = follows ? kModeSpeeds : 1, all = system.elastic_mode_count();
   ModeSet undamped;
@@ -119,7 +126,7 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
     undamped = solve_modes(system, {.count = count});
     if (count == std::min(all, kMostModes) || undamped.omega(count - 1) > highest) break;
   }
-  DampedPairs pairs(system);
+  DampedPairs& pairs = poles.pairs;
   SweepModes modes;
   modes.speeds.resize(columns);
   modes.lambda.setZero(undamped.count(), columns);
@@ -133,10 +140,16 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
     const double part = columns > 1 ? static_cast<double>(i) / (columns - 1) : 0.5;
     modes.speeds[i] = speeds.front() + part * (speeds.back() - speeds.front());
     const Vector damping = pairs.damping() + load_damping(system, modes.speeds[i]);
+    poles.damping.push_back(damping);
+    Eigen::VectorXcd& found = poles.lambda.emplace_back(Eigen::VectorXcd::Zero(undamped.count()));
+    Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), undamped.count());
     for (std::size_t m = 0; m < shapes.size(); ++m) {
       const auto mode = static_cast<Eigen::Index>(m);
       pause();
-      if (!pairs.refine(damping, last[m], shapes[m]) || !(last[m].imag() > 0.0)) continue;
+      const bool settled = pairs.refine(damping, last[m], shapes[m]);
+      of_unknowns.col(mode) = shapes[m];
+      if (!settled || !(last[m].imag() > 0.0)) continue;
+      found[mode] = last[m];
       const bool known =
           ((modes.lambda.col(i).head(mode).array() - last[m]).abs() < kSameMode * std::abs(last[m])).any();
       if (!known) modes.lambda(mode, i) = last[m];
@@ -151,11 +164,12 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
 class Search {
  public:
   Search(LinearResponse& response, TrigonometricSum& sum, const std::function<void()>& pause,
-         LinearSweep& sweep)
+         LinearSweep& sweep, const DampedPoles& poles)
       : response_(response),
         sum_(sum),
         pause_(pause),
         sweep_(sweep),
+        poles_(poles),
         low_(sweep.speeds.front()),
         high_(sweep.speeds.back()) {
     find_content();
@@ -392,23 +406,26 @@ class Search {
     return best;
   }
   /// Finds section, own amplitude and the sections' speeds of a critical at which the order meets a damped mode. In
-  /// x = (o w - Im lambda) / |Re lambda| the amplitude is r / (1 + i x) + b0 + b1 x, from its values at x = -1, 0, 1.
+  /// x = (o w - Im lambda) / |Re lambda| the amplitude is r / (1 + i x) + b0 + b1 x + b2 x^2, from r, the mode's residue
+  /// over |Re lambda|, and values at x = -1, 0, 1.
   void find_own_parts(SweepCritical& critical, int order) {
     const std::complex<double> lambda = sweep_.modes.at(critical.mode, critical.speed), i(0.0, 1.0);
     const double width = std::abs(lambda.real()) / critical.order;
     const auto at = [&](double x) -> Eigen::RowVectorXcd {
       pause_();
       response_.vibration(critical.speed + x * width, point_, order);
+      if (response_.direction() < 0.0) return point_.amplitude.row(order).conjugate();
       return point_.amplitude.row(order);
     };
-    const Eigen::RowVectorXcd below = at(-1.0), here = at(0.0), above = at(1.0);
-    const Eigen::RowVectorXcd own = 2.0 * here - above - below, rest = here - own,
-                              slope = 0.5 * (above - below) + 0.5 * i * own;
+    const Eigen::RowVectorXcd below = at(-1.0), above = at(1.0), here = at(0.0);
+    const Eigen::RowVectorXcd own = response_.amplitudes_of(residue(critical)) / std::abs(lambda.real()),
+                              rest = here - own, slope = 0.5 * (above - below) + 0.5 * i * own,
+                              bend = 0.5 * (above + below - own) - rest;
     critical.section = most_moved(own);
     critical.own_amplitude = std::abs(own[critical.section]);
     for (Eigen::Index c = 0; c < own.size(); ++c) {
       const auto amplitude = [&](double x) {
-        return std::abs(own[c] / (1.0 + i * x) + rest[c] + slope[c] * x);
+        return std::abs(own[c] / (1.0 + i * x) + rest[c] + (slope[c] + bend[c] * x) * x);
       };
       constexpr double kTolerance = 1e-6;
       const bool mine = std::abs(own[c]) > kOwnPart * std::abs(here[c]);
@@ -418,10 +435,24 @@ class Search {
     }
   }
 
+  /// Residue of the forces last solved for at a critical's mode, linearly between the columns of the modes.
+  Eigen::VectorXcd residue(const SweepCritical& critical) const {
+    const Vector& speeds = sweep_.modes.speeds;
+    const Eigen::VectorXcd p = response_.forces();
+    if (speeds.size() == 1) return poles_.residue(0, critical.mode, p);
+    const double step = speeds[1] - speeds[0], most = static_cast<double>(speeds.size()) - 2.0;
+    const double from = std::clamp(std::floor((critical.speed - speeds[0]) / step), 0.0, most),
+                 part = (critical.speed - speeds[0]) / step - from;
+    const auto column = static_cast<std::size_t>(from);
+    return (1.0 - part) * poles_.residue(column, critical.mode, p) +
+           part * poles_.residue(column + 1, critical.mode, p);
+  }
+
   LinearResponse& response_;
   TrigonometricSum& sum_;
   const std::function<void()>& pause_;
   LinearSweep& sweep_;
+  const DampedPoles& poles_;
   double low_, high_;
   std::map<double, Values> curves_;  // half ranges and heat of all sections by speed
   std::vector<double> largest_;      // largest finite half range of each section
@@ -436,11 +467,12 @@ class Search {
 void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
                       const std::function<void()>& wanted_pause, LinearSweep& sweep) {
   const std::function<void()> pause = wanted_pause ? wanted_pause : [] {};
+  DampedPoles poles{DampedPairs(system)};
   try {
     const double highest = sweep.orders.back() * sweep.speeds.back();
     sweep.modes = system.size() > kMostUnknowns
-                      ? follow_pairs(system, response, sweep.speeds, highest, pause, sweep)
-                      : follow_modes(system, response, sweep.speeds, pause, sweep);
+                      ? follow_pairs(system, response, sweep.speeds, highest, pause, sweep, poles)
+                      : follow_modes(system, response, sweep.speeds, pause, sweep, poles);
     const Eigen::Index count = sweep.modes.lambda.rows();
     if (system.size() > kMostUnknowns && count == kMostModes &&
         sweep.modes.lambda.row(count - 1).imag().maxCoeff() < highest)
@@ -452,7 +484,7 @@ void find_sweep_peaks(const System& system, LinearResponse& response, Trigonomet
     sweep.modes_note = std::string(error.what()) +
                        ": a resonance that is narrower than the distance of the speeds can be missed";
   }
-  Search search(response, sum, pause, sweep);
+  Search search(response, sum, pause, sweep, poles);
   search.seed();
   search.find_peaks();
   search.find_heat();

@@ -7,11 +7,8 @@
 /// speeds are then refined between their neighbours (solvers/periodic/bracketed_search.hpp), as is the largest heat of each
 /// section. An order that meets an undamped mode is an infinite peak of every section that the mode moves.
 ///
-/// A critical is in the section in which the mode's own part of the order's amplitude is largest. With s = |Re lambda|, of
-///
-///   a(o w) = r / (i o w - lambda) + b0 + b1 (o w - Im lambda)
-///
-/// the second difference of a over the frequencies Im lambda - s, Im lambda and Im lambda + s is -r / s.
+/// A critical is in the section in which the mode's own part |r| / |Re lambda| of the order's amplitude is largest, with the
+/// residue r of the amplitude at i o w = lambda from the shape of the damped mode (DampedPairs::residue()).
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 namespace drev {

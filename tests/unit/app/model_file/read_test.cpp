@@ -279,6 +279,10 @@ TEST_CASE("The torques of a run that names none are those of parts that carry th
       "} }\n"
       "puls = { type = \"engine_order_torque\", node = \"l\", harmonics = { order = [1], amplitude_Nm = [10] "
       "} }\n"
-      "fan = { type = \"torque_function\", node = \"l\", expression = \"-0.002*speed_rad_per_s^2\" }\n");
-  CHECK(model_case.torques == std::vector<std::string>{"s.torque_Nm"});
+      "fan = { type = \"torque_function\", node = \"l\", expression = \"-0.002*speed_rad_per_s^2\" }\n"
+      "bearing = { type = \"dashpot\", node = \"l\", damping_Nms_per_rad = 100 }\n"
+      "oil = { type = \"absolute_damper\", node = \"m\", damping_Nms_per_rad = 100 }\n"
+      "seal = { type = \"bearing_friction\", node = \"m\", torque_Nm = 100 }\n"
+      "between = { type = \"dashpot\", nodes = [\"m\", \"l\"], damping_Nms_per_rad = 1 }\n");
+  CHECK(model_case.torques == std::vector<std::string>{"s.torque_Nm", "between.torque_Nm"});
 }

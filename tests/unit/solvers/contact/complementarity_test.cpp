@@ -43,6 +43,31 @@ TEST_CASE("Lemke's method finds the one solution that trying every set of variab
   CHECK(!solve_complementarity(-Eigen::MatrixXd::Identity(1, 1), -Eigen::VectorXd::Ones(1)));
 }
 
+TEST_CASE("Every set of variables: a solution of any matrix that has one, with what is wanted first") {
+  const Eigen::MatrixXd negative = -Eigen::MatrixXd::Identity(2, 2);
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(2);  // w = 1 - z: each of z is 0 or 1
+  CHECK(try_every_set(negative, ones, {1, 0})->z == Eigen::Vector2d(1.0, 0.0));
+  CHECK(try_every_set(negative, ones, {0, 1})->z == Eigen::Vector2d(0.0, 1.0));
+  CHECK(try_every_set(negative, ones, {1, 0})->basic == std::vector<char>{1, 0});
+  CHECK(!try_every_set(negative, -ones, {1, 0}));
+  const Eigen::Index many = kMostTried + 1;
+  CHECK(!try_every_set(Eigen::MatrixXd::Identity(many, many), Eigen::VectorXd::Ones(many), {}));
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> even(-1.0, 1.0);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Eigen::Index n = 1 + trial % 5;
+    const Eigen::MatrixXd m = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return even(random); });
+    Eigen::VectorXd z = Eigen::VectorXd::NullaryExpr(n, [&] { return even(random); });
+    const Eigen::VectorXd w = (-z).cwiseMax(0.0);
+    z = z.cwiseMax(0.0);
+    const Eigen::VectorXd q = w - m * z;
+    const auto found = try_every_set(m, q, std::vector<char>(static_cast<std::size_t>(n), 0));
+    REQUIRE(found);
+    CHECK((m * found->z + q).minCoeff() > -1e-10);
+    CHECK(std::abs(found->z.dot(m * found->z + q)) < 1e-9);
+  }
+}
+
 TEST_CASE("A gear's loss stands on the greater of its two lines") {
   // Tie and loss of a gear between inertias of 1 and 1, ratio 1; efficiencies 0.5.
   const auto solved = [](double on_a, double on_b, int turns) {

@@ -350,3 +350,31 @@ TEST_CASE("A gas torque that is zero up to a knot and bends behind it: the motio
     CHECK((state.z - expected.z).lpNorm<Eigen::Infinity>() < std::max(10.0 * tolerance, 1e-9) * 5.0);
   }
 }
+
+TEST_CASE(
+    "An engine at the nominal angle on a free disc: its energy balances, however far it turns in a step",
+    "[exact]") {
+  // Nothing but the knots bends the motion, so that the gas torque bends much between them.
+  const Motion steady = constant_speed(20.0 * kPi), rising = run_up(50.0, 80.0, 0.0, 1.0);
+  for (const Motion* nominal : {&steady, &rising})
+    for (const double oscillating : {0.0, 2.0})
+      for (const bool misfires : {false, true}) {
+        INFO((nominal == &rising) << " " << oscillating << " kg " << misfires);
+        Model m("disc");
+        m.add_node("crank");
+        m.add<Inertia>("J", {"crank"}, {.inertia = 1.0});
+        EngineCylinders::Params p =
+            engine_of({.angle = {0.0, deg(120), deg(300)}, .pressure = {10e5, 1e5, 1e5}});
+        p.strokes = 2;
+        p.firing_angles = {0.0};
+        p.oscillating_mass = oscillating;
+        p.misfiring_cylinder = misfires ? 1 : 0;
+        p.twist_feedback = false;
+        m.add<EngineCylinders>("engine", {"crank"}, p);
+        m.set_reference("crank", *nominal);
+        const RunSummary run = propagate(m.build(), {.t_end = 1.0});
+        INFO(run.brief_report());
+        CHECK(run.ok());
+        CHECK(std::abs(run.energy.relative_error()) < 1e-10);
+      }
+}

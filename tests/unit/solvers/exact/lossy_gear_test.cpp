@@ -125,6 +125,23 @@ TEST_CASE("Lossy gear: a self-locking worm holds its load, and must be driven to
   CHECK_THROWS_WITH(propagate(worm(10.0), {.t_end = 0.5}), Catch::Contains("jams"));
 }
 
+TEST_CASE("Lossy gear: a worm before a heavy load stays at rest where it can, else moves as its lines ask") {
+  // tau_1 = 2 P or -0.1 P, the lesser where it turns backwards. At rest between -0.1 and 2 N m for a load of 1 N m.
+  const auto worm = [](double on_a) {
+    Model m = gear_train(1.0, 100.0, {.ratio = 1.0, .efficiency_forward = 0.5, .efficiency_backward = -0.1});
+    load(m, "a", on_a);
+    load(m, "b", -1.0);
+    return m.build();
+  };
+  const FrictionRun held = ran(worm(-0.05), 2.0);
+  CHECK(held.state.v.lpNorm<Eigen::Infinity>() == 0.0);
+  // P = 100 a + 1, a + 2 P = -0.11.
+  const System system = worm(-0.11);
+  const FrictionRun pushed = ran(system, 2.0);
+  CHECK(pushed.state.v[0] == Approx(-2.11 / 201.0 * 2.0).epsilon(1e-12));
+  CHECK(channel_at(system, pushed.state, "gear.torque_in_Nm") == Approx(2.0 - 200.0 * 2.11 / 201.0));
+}
+
 TEST_CASE("Lossy gear: efficiencies and bearing torques over the speed") {
   const auto train = [](const std::string& driven, LossyGear::Params gear) {
     Model m = gear_train(0.8, 1.5, std::move(gear));

@@ -299,3 +299,29 @@ TEST_CASE("Orders of a rotor's own angle and speed from rest are its vibration a
   }
   CHECK(looked_at > 10);
 }
+
+TEST_CASE("A nominal speed that reverses: its windows are left out, and all others exact in either sense") {
+  Model m("back and forth");
+  const NodeId end = m.add_node("end"), disc = m.add_node("disc");
+  m.set_reference(end, run_up(-60.0, 60.0, 0.0, 5.0));
+  m.hold(end);
+  m.add<Inertia>("J", {disc}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {end, disc}, {.stiffness = 1e4, .damping = 10.0});
+  m.add<EngineOrderTorque>("load", {disc},
+                           {.harmonics = {{.order = 1.0, .amplitude = 100.0, .phase = 0.7},
+                                          {.order = 2.0, .amplitude = 50.0, .phase = 1.3}},
+                            .twist_feedback = false});
+  const System system = m.build();
+  OrderTracking tracking(system, {"load.torque_Nm"}, {1.0, 2.0}, 4.0, true);
+  REQUIRE(run_method(system, {.name = kExact, .tolerance = 1e-9}, {.t_end = 5.0}, {&tracking}).ok());
+  const OrderTracks& tracks = tracking.tracks();
+  int before = 0, behind = 0;
+  for (std::size_t i = 0; i < tracks.time.size(); ++i) {
+    INFO(tracks.time[i] << " s");
+    ++(tracks.time[i] < 2.5 ? before : behind);
+    CHECK(tracks.amplitude[0][0][i] == Approx(100.0).epsilon(1e-3));
+    CHECK(tracks.amplitude[0][1][i] == Approx(50.0).epsilon(1e-3));
+  }
+  CHECK(before > 2);
+  CHECK(behind > 2);
+}
