@@ -1,11 +1,13 @@
 // What loads do between the points at which exact propagation calls them: narrow curves and gates over the speed, smooth ones of
-// small width, short circuits and pulses, kinks at rest (solvers/exact/smooth_loads.hpp, core/law/ranged.hpp, elements/curve.cpp).
+// small width, short circuits and pulses, kinks at rest, stops of a law that does not say where it kinks (solvers/exact/smooth_loads.hpp, core/law/ranged.hpp, elements/curve.cpp).
+#include <drev/core/law_element.hpp>
 #include <drev/core/model.hpp>
 #include <drev/elements/applied_torque.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/run/recorder.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/catch.hpp"
@@ -34,6 +36,15 @@ Model pushed_off(double speed, double damping = 0.0) {
   m.set_initial("a", 0.0, speed);
   return m;
 }
+
+/// k (x - at) beyond `at`; its kink is not stated.
+struct Stop {
+  double k, at;
+  ScalarResponse operator()(const ScalarInput& in) const {
+    const double in_it = std::max(0.0, in.x - at);
+    return {.y = k * in_it, .dy_dx = in_it > 0.0 ? k : 0.0, .stored_energy = 0.5 * k * in_it * in_it};
+  }
+};
 
 /// Two discs on a soft shaft, free; their momentum is what torques from outside gave them.
 Model free_pair() {
@@ -158,4 +169,23 @@ TEST_CASE("A fan that turns back beside large torques keeps its kink, which is n
     const State state = after(m, 1.2, tolerance, 2000);
     CHECK(state.v[3] == Approx(2.33463400).epsilon(5e-9));
   }
+}
+
+TEST_CASE("A stop of a law that does not say where it kinks is met wherever the disc just reaches it") {
+  // x = 10 sin 10 t up to the stop at x_0 = 10 sin phi; in it about x_c with w^2 = 100 + k, and back with the same speed.
+  const double t_end = 2.0;
+  for (const double k : {1e2, 1e4, 1e6})
+    for (const double at : {5.0, 9.0, 9.9, 9.99}) {
+      INFO("stop of " << k << " N m/rad at " << at << " rad");
+      const double phi = std::asin(0.1 * at), speed = 100.0 * std::cos(phi), w = std::sqrt(100.0 + k);
+      const double deep = 100.0 * at / (w * w), in_it = 2.0 * std::atan2(speed / w, deep) / w;
+      const double t = std::fmod(t_end, 0.1 * (kPi + 2.0 * phi) + in_it), since = t - 0.1 * phi;
+      const double x = since < 0.0 ? 10.0 * std::sin(10.0 * t)
+                       : since < in_it
+                           ? at - deep + deep * std::cos(w * since) + speed / w * std::sin(w * since)
+                           : 10.0 * std::sin(kPi - phi + 10.0 * (since - in_it));
+      Model m = pushed_off(100.0);
+      m.add<LawElement<Stop>>("stop", {"a"}, {k, at});
+      CHECK(after(m, t_end, 1e-10, 1000).z[0] == Approx(x).margin(2e-8));
+    }
 }
