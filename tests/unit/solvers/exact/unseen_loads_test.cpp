@@ -38,7 +38,7 @@ Model pushed_off(double speed, double damping = 0.0) {
 }
 
 /// k (x - at) beyond `at`; its kink is not stated.
-struct Stop {
+struct BareStop {
   double k, at;
   ScalarResponse operator()(const ScalarInput& in) const {
     const double in_it = std::max(0.0, in.x - at);
@@ -185,7 +185,7 @@ TEST_CASE("A stop of a law that does not say where it kinks is met wherever the 
                            ? at - deep + deep * std::cos(w * since) + speed / w * std::sin(w * since)
                            : 10.0 * std::sin(kPi - phi + 10.0 * (since - in_it));
       Model m = pushed_off(100.0);
-      m.add<LawElement<Stop>>("stop", {"a"}, {k, at});
+      m.add<LawElement<BareStop>>("stop", {"a"}, {k, at});
       CHECK(after(m, t_end, 1e-10, 1000).z[0] == Approx(x).margin(2e-8));
     }
 }
