@@ -28,8 +28,9 @@ constexpr double kKinkRest = 1e-5;
 // Rounding of the projection's coefficients, relative to the largest force so far.
 constexpr double kForceRounding = 4e-15;
 // What a projection leaves is rounding where it is below kMostRounding of the force and a step of at most kMuchShorter the length
-// leaves at least kSameRest of it. A smooth force would leave far less, and a jump below kMostRounding moves next to nothing.
-constexpr double kMostRounding = 1e-10, kMuchShorter = 0.3, kSameRest = 0.5;
+// leaves at least kSameRest of it. A smooth force would leave far less, and a jump below kMostRounding moves next to nothing. That of a
+// force that follows the motion is known from its slopes, and a kink that comes and goes with the motion leaves as much, too.
+constexpr double kMostRounding = 1e-7, kMostOfMoved = 1e-10, kMuchShorter = 0.3, kSameRest = 0.5;
 constexpr double kRoundingVaries = 16.0;  // from step to step, at most
 
 std::array<double, 3> over_step(const MotionPoint& m, double h) {
@@ -180,12 +181,13 @@ double LoadSeries::size_of_force(int row) const {
 
 std::optional<double> LoadSeries::find_rounding(const ProjectedLaws& laws) {
   std::optional<double> found;
-  const auto look = [&](int row, double off_at_ends) {
+  const auto look = [&](int row, double off_at_ends, bool follows) {
+    const double most = follows ? kMostOfMoved : kMostRounding;
     const auto [smooth, rough] = rest_of_force(row, off_at_ends);
     const double tail = std::max(smooth, rough);
     double& before = too_large_[idx(row)];
     if (tried_ > 0.0 && h_ <= kMuchShorter * tried_ && tail > rounding_[idx(row)] &&
-        tail >= kSameRest * before && tail <= kMostRounding * size_of_force(row)) {
+        tail >= kSameRest * before && tail <= most * size_of_force(row)) {
       rounding_[idx(row)] = kRoundingVaries * tail;
       found = tried_;
     }
@@ -238,7 +240,7 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     return std::isfinite(by) ? by : 0.0;
   };
   if (held) {
-    const auto note = [&](int row, double) {
+    const auto note = [&](int row, double, bool) {
       largest_force_[idx(row)] = std::max(largest_force_[idx(row)], size_of_force(row));
     };
     smooth_.for_rows(note);
@@ -246,7 +248,7 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   }
   // The path is off inside the step; of that, the contraction factor comes back at its end.
   const double at_end = std::max(kEndRest, kPathRest * pass.contraction);
-  const auto note_rest = [&](int row, double off_at_ends) {
+  const auto note_rest = [&](int row, double off_at_ends, bool) {
     const Rest rest = rest_of_force(row, off_at_ends);
     const double largest = largest_force_[idx(row)];
     // Where friction leaves no motion but rounding, the forces themselves are the measure.
@@ -289,8 +291,8 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
     pass.change = std::max(pass.change, held && force > 0.0 ? std::min(moves, size / force) : moves);
   };
   for_knotted([&](const PlacedLoad& l, double, double) { note_change(l.row); });
-  smooth_.for_rows([&](int row, double) { note_change(row); });
-  laws.for_rows([&](int row, double) { note_change(row); });
+  smooth_.for_rows([&](int row, double, bool) { note_change(row); });
+  laws.for_rows([&](int row, double, bool) { note_change(row); });
   if (pass.change == 0.0) return pass;
   projected_ = true;
   with_laws_ = !laws.empty();

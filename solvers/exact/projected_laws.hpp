@@ -29,12 +29,12 @@ class ProjectedLaws {
   /// Adds the differences along the series' path, on the right side; returns how much of a change of the
   /// path comes back.
   double project(const TaylorSeries& series, LegendreProjection& projection);
-  /// Calls judge(row, off) for every row on which such a law acts: as SmoothLoads::for_rows(). A law is to say where it kinks; one
+  /// Calls judge(row, off, true) for every row on which such a law acts: as SmoothLoads::for_rows(). A law is to say where it kinks; one
   /// that does not is looked at between the nodes, at the ends of the step and where its deflection turns.
   template <class Judge>
   void for_rows(const Judge& judge) const {
     for (const Law& law : laws_)
-      for (const Entry& e : law.term->z) judge(e.index, std::abs(e.coeff) * law.off);
+      for (const Entry& e : law.term->z) judge(e.index, std::abs(e.coeff) * law.off, true);
   }
   /// As SmoothLoads::for_rounding().
   template <class Note>

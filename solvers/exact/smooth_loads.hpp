@@ -85,11 +85,11 @@ class SmoothLoads {
   void for_rounding(const Note& note) const {
     for (const Place& l : loads_) note(l.row, l.rounding);
   }
-  /// Calls judge(row, off_at_ends) for every row with such a load: how far it is off its projection at the ends of the step and
-  /// where no node is.
+  /// Calls judge(row, off_at_ends, follows) for every row with such a load: how far it is off its projection at the ends of the step and
+  /// where no node is; whether it follows the motion.
   template <class Judge>
   void for_rows(const Judge& judge) const {
-    for (const Place& l : loads_) judge(l.row, l.off_at_ends);
+    for (const Place& l : loads_) judge(l.row, l.off_at_ends, l.feedback);
   }
   /// Work of the tangents' slopes on the unknowns over a part of the step, at whose end they stand [J].
   double slope_work(const TaylorSeries& series, const Vector& end) const;
