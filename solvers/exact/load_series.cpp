@@ -199,8 +199,35 @@ std::optional<double> LoadSeries::find_rounding(const ProjectedLaws& laws) {
   return found;
 }
 
-LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held,
-                                     double unseen) {
+/// Of the motion, by a force on a row. Where friction leaves no motion but rounding, the forces themselves are the measure.
+double LoadSeries::measured(const TaylorSeries& series, int row, double force, bool held) const {
+  const double by = force > 0.0 ? force * relative_move(series, row) : 0.0,
+               largest = largest_force_[idx(row)];
+  if (held && largest > 0.0 && !(by <= force / largest)) return force / largest;
+  return std::isfinite(by) ? by : 0.0;
+}
+
+double LoadSeries::unseen_of(const TaylorSeries& series, int row, double rough, bool held) const {
+  // A train at rest, which is moved between the nodes alone.
+  if (rough > 0.0 && !std::isfinite(relative_move(series, row)) && size_of_force(row) == 0.0)
+    return std::numeric_limits<double>::infinity();
+  return kNodeRest * measured(series, row, rough, held);
+}
+
+double LoadSeries::unseen_between(const TaylorSeries& series, ProjectedLaws& laws, bool held, double most) {
+  // A force that does more moves more than may be left unseen; where nothing has moved yet, any.
+  smooth_.look_between(series, [&](int row) { return most / (kNodeRest * relative_move(series, row)); });
+  if (!laws.empty()) laws.look_between(series);
+  double unseen = 0.0;
+  const auto note = [&](int row, double off, bool) {
+    unseen = std::max(unseen, unseen_of(series, row, rest_of_force(row, off).rough, held));
+  };
+  smooth_.for_rows(note);
+  laws.for_rows(note);
+  return unseen;
+}
+
+LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held) {
   if (first) {
     for (int k = 0; k < 3; ++k) std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
     last_.clear();
@@ -214,10 +241,7 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   Pass pass;
   pass.follows = smooth_.follows();
   pass.contraction = find_kinks(series);
-  // A force that does more moves more than may be left unseen; where nothing has moved yet, any.
-  const auto least_of = [&](int row) { return unseen / (kNodeRest * relative_move(series, row)); };
-  pass.contraction =
-      std::max(pass.contraction, smooth_.project(series, first, projection_, of_kinks_, least_of));
+  pass.contraction = std::max(pass.contraction, smooth_.project(series, first, projection_, of_kinks_));
   if (!laws.empty()) {
     of_loads_ = projection_;
     if (kinked()) of_loads_ += of_kinks_;
@@ -229,15 +253,11 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   smooth_.for_rounding(note_rounding);
   laws.for_rounding(note_rounding);
   // Kinks apart: no polynomial of any degree holds them, and at the step's end they need none.
-  const auto moves = [&](double force, int row) {
-    return force > 0.0 ? force * relative_move(series, row) : 0.0;
-  };
   const auto rest_of_kinks = [&](int row) {
     double tail = 0.0;
     for (int j = kProjectionDegree - kTail + 1; j <= kProjectionDegree; ++j)
       tail += std::abs(of_kinks_.coefficient(j, row));
-    const double by = moves(tail, row);
-    return std::isfinite(by) ? by : 0.0;
+    return measured(series, row, tail, false);
   };
   if (held) {
     const auto note = [&](int row, double, bool) {
@@ -250,22 +270,12 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   const double at_end = std::max(kEndRest, kPathRest * pass.contraction);
   const auto note_rest = [&](int row, double off_at_ends, bool) {
     const Rest rest = rest_of_force(row, off_at_ends);
-    const double largest = largest_force_[idx(row)];
-    // Where friction leaves no motion but rounding, the forces themselves are the measure.
-    const auto measured = [&](double force) {
-      const double by = moves(force, row);
-      if (held && largest > 0.0 && !(by <= force / largest)) return force / largest;
-      return std::isfinite(by) ? by : 0.0;
-    };
-    const double lacks = std::max(rest.smooth, rest.rough);
+    const double largest = largest_force_[idx(row)], lacks = std::max(rest.smooth, rest.rough);
     if (held && lacks > kForceRounding * largest) pass.torque = std::max(pass.torque, lacks / largest);
-    const double smooth = measured(rest.smooth);
+    const double smooth = measured(series, row, rest.smooth, held);
     pass.inside = std::max(pass.inside, kPathRest * smooth);
     pass.residual = std::max(pass.residual, at_end * smooth);
-    pass.unseen = std::max(pass.unseen, kNodeRest * measured(rest.rough));
-    // A train at rest, which is moved between the nodes alone.
-    if (rest.rough > 0.0 && !std::isfinite(relative_move(series, row)) && size_of_force(row) == 0.0)
-      pass.unseen = std::numeric_limits<double>::infinity();
+    pass.unseen = std::max(pass.unseen, unseen_of(series, row, rest.rough, held));
   };
   smooth_.for_rows(note_rest);
   laws.for_rows(note_rest);

@@ -69,8 +69,10 @@ class LoadSeries {
     bool follows = false;  ///< some load that is called follows the motion
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
-  /// first: the step is new. held: some friction contact is stuck. unseen: what may be left unseen, as Pass::unseen.
-  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held, double unseen);
+  /// first: the step is new. held: some friction contact is stuck.
+  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held);
+  /// Where the path has settled: Pass::unseen of what loads and laws do between the nodes. most: what may be left unseen.
+  double unseen_between(const TaylorSeries& series, ProjectedLaws& laws, bool held, double most);
   /// After a pass over a step that leaves too much: where that is rounding of forces, since a longer step from the same start
   /// left no more, the length of that one [s]. Passes leave as much out of account from then on.
   std::optional<double> find_rounding(const ProjectedLaws& laws);
@@ -158,6 +160,8 @@ class LoadSeries {
     double smooth = 0.0, rough = 0.0;
   };
   Rest rest_of_force(int row, double off_at_ends) const;
+  double measured(const TaylorSeries& series, int row, double force, bool held) const;
+  double unseen_of(const TaylorSeries& series, int row, double rough, bool held) const;
   double size_of_force(int row) const;
 
   const System& system_;

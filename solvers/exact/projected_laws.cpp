@@ -82,7 +82,7 @@ double ProjectedLaws::project(const TaylorSeries& series, LegendreProjection& pr
   const GaussRule& rule = gauss_rule();
   double gain = 0.0;
   forces_.clear();
-  for (Law& law : laws_) law.rounding = 0.0;
+  for (Law& law : laws_) law.rounding = law.off = 0.0;
   for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
     series.evaluate(rule.s[q], z_, v_);
     assembler_.set_time(t_ + h_ * rule.s[q]);
@@ -102,7 +102,6 @@ double ProjectedLaws::project(const TaylorSeries& series, LegendreProjection& pr
     }
   }
   projection.add_nodes(forces_);
-  look_between(series);
   return gain;
 }
 

@@ -29,6 +29,8 @@ class ProjectedLaws {
   /// Adds the differences along the series' path, on the right side; returns how much of a change of the
   /// path comes back.
   double project(const TaylorSeries& series, LegendreProjection& projection);
+  /// Looks at what was projected last between the nodes, for for_rows().
+  void look_between(const TaylorSeries& series);
   /// Calls judge(row, off, true) for every row on which such a law acts: as SmoothLoads::for_rows(). A law is to say where it kinks; one
   /// that does not is looked at between the nodes, at the ends of the step and where its deflection turns.
   template <class Judge>
@@ -67,7 +69,6 @@ class ProjectedLaws {
   };
   struct Point;
   Point look(const Law& law);
-  void look_between(const TaylorSeries& series);
 
   const System& system_;
   Assembler assembler_;

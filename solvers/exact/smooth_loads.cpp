@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "core/law/ranged.hpp"
 #include "solvers/exact/expanded_loads.hpp"
@@ -58,14 +59,8 @@ void SmoothLoads::add_slopes(TaylorSeries& series) const {
   for (const Place& l : loads_) l.add_slopes(series, 0.0);
 }
 
-/// A called load at s of the step, on the series' path.
-struct SmoothLoads::Point {
-  double s = 0.0, angle = 0.0, speed = 0.0;  // rad, rad/s
-  double beyond = 0.0;                       // its tangent, on the row [N m]
-  LoadResponse response = {};
-};
-
-SmoothLoads::Point SmoothLoads::look(const Place& l, double s, double along, double rate) const {
+SmoothLoads::Point SmoothLoads::look(const Place& l, double s, double along, double rate,
+                                     LoadResponse& r) const {
   const double turn = (phi_[1] + phi_[2] * s) * s, deviation = l.coeff * along;
   const double nominal_speed = l.ratio * (phi_[1] + 2.0 * phi_[2] * s) / h_;
   const LoadInput in{.t = t_ + h_ * s,
@@ -73,17 +68,16 @@ SmoothLoads::Point SmoothLoads::look(const Place& l, double s, double along, dou
                      .deviation = deviation,
                      .speed = nominal_speed + l.coeff * rate,
                      .nominal_speed = nominal_speed};
-  const LoadResponse r = l.term->load->evaluate(in);
+  r = l.term->load->evaluate(in);
   const double tangent = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
-  return {s, in.nominal_angle + deviation, in.speed, l.coeff * (r.torque - l.torque - tangent), r};
+  return {s, in.nominal_angle + deviation, in.speed, l.coeff * (r.torque - l.torque - tangent), r.torque};
 }
 
 /// What a called load does between the points at which it was called.
 class SmoothLoads::Between {
  public:
-  using AtNodes = std::array<double, GaussRule::kNodes>;
-  Between(const SmoothLoads& of, const Place& load, const TaylorSeries& series, const AtNodes& at_nodes)
-      : of_(of), load_(load), series_(series), fit_(at_nodes) {}
+  Between(const SmoothLoads& of, const Place& load, const TaylorSeries& series)
+      : of_(of), load_(load), series_(series), fit_(load.at_nodes) {}
 
   Point look(double s) const {
     double along = 0.0, rate = 0.0;
@@ -91,19 +85,26 @@ class SmoothLoads::Between {
       rate = rate * s + along;
       along = along * s + series_.coefficient(k, load_.row);
     }
-    return of_.look(load_, s, along, rate / of_.h_);
+    LoadResponse r;
+    return of_.look(load_, s, along, rate / of_.h_, r);
   }
 
-  /// The most that the load is off its projection between points in the order of s.
-  double off(std::span<const Point> points) {
-    if (!bound(points)) {
-      for (std::size_t i = 0; i + 1 < points.size(); ++i) take(look(0.5 * (points[i].s + points[i + 1].s)));
-      return off_;
-    }
-    if (hides(points))
-      for (std::size_t i = 0; i + 1 < points.size(); ++i) divide(points[i], points[i + 1], kDeepest);
-    return off_;
+  /// Looks wherever the load may do what the nodes do not show. False: nobody knows what it may do.
+  bool divides() {
+    if (!bound(load_.points)) return false;
+    if (hides(load_.points))
+      for (std::size_t i = 0; i + 1 < load_.points.size(); ++i)
+        divide(load_.points[i], load_.points[i + 1], kDeepest);
+    return true;
   }
+
+  Point take(const Point& p) {
+    ++looks_;
+    off_ = std::max(off_, std::abs(p.beyond - fit_.at(p.s)));
+    return p;
+  }
+  /// The most that the load was off its projection.
+  double off() const { return off_; }
 
  private:
   // How much more than its points show a load may change between them; how often a part is halved; looks at most.
@@ -143,7 +144,7 @@ class SmoothLoads::Between {
     if (may * length <= load_.least) return false;
     double shown = 0.0;
     for (std::size_t i = 0; i + 1 < points.size(); ++i)
-      shown += std::abs(load_.coeff * (points[i + 1].response.torque - points[i].response.torque));
+      shown += std::abs(load_.coeff * (points[i + 1].torque - points[i].torque));
     return !(may <= kMore * shown);
   }
 
@@ -154,12 +155,6 @@ class SmoothLoads::Between {
     if (depth == 0 || !hides(points)) return;
     divide(a, middle, depth - 1);
     divide(middle, b, depth - 1);
-  }
-
-  Point take(const Point& p) {
-    ++looks_;
-    off_ = std::max(off_, std::abs(p.beyond - fit_.at(p.s)));
-    return p;
   }
 
   const SmoothLoads& of_;
@@ -173,27 +168,49 @@ class SmoothLoads::Between {
 double SmoothLoads::differ_called(Place& l, const TaylorSeries& series, NodeForces& forces) const {
   const GaussRule& rule = gauss_rule();
   double gain = 0.0;
-  Between::AtNodes at_nodes;
-  std::array<Point, GaussRule::kNodes + 2> points;
-  points.front() = {0.0, l.angle, l.speed, 0.0, {.torque = l.torque}};
+  l.points.front() = {0.0, l.angle, l.speed, 0.0, l.torque};
   l.rounding = 0.0;
   for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
     const std::size_t at = q * idx(stride_) + idx(l.row);
-    const Point& p = points[q + 1] = look(l, rule.s[q], path_[at], rate_[at]);
-    const LoadResponse& r = p.response;
+    LoadResponse r;
+    const Point& p = l.points[q + 1] = look(l, rule.s[q], path_[at], rate_[at], r);
     if (l.feedback)
       gain = std::max(gain,
                       0.5 * h_ * h_ * std::abs(r.dtorque_dangle - l.slope) + h_ * std::abs(r.dtorque_dspeed));
     l.rounding = std::max(l.rounding, kTorqueRounding * std::abs(l.coeff) *
                                           (std::abs(r.torque) + std::abs(r.dtorque_dangle * p.angle) +
                                            std::abs(r.dtorque_dspeed * p.speed)));
-    at_nodes[q] = p.beyond;
+    l.at_nodes[q] = p.beyond;
     forces.at(q, l.row) += p.beyond;
   }
-  Between between(*this, l, series, at_nodes);
-  points.back() = between.look(GaussRule::kAheadOfEnd);
-  l.off_at_ends = std::max(rule.off_at_ends(at_nodes, 0.0, points.back().beyond), between.off(points));
+  l.points.back() = Between(*this, l, series).look(GaussRule::kAheadOfEnd);
+  l.off_at_ends = rule.off_at_ends(l.at_nodes, 0.0, l.points.back().beyond);
   return gain;
+}
+
+void SmoothLoads::look_between(const TaylorSeries& series) {
+  constexpr int kPlaces = GaussRule::kNodes;  // between the nodes, and behind the last
+  static const auto places = [] {
+    std::array<double, kPlaces> s{};
+    for (std::size_t q = 0; q < kPlaces; ++q)
+      s[q] = 0.5 * (gauss_rule().s[q] + (q + 1 < kPlaces ? gauss_rule().s[q + 1] : 1.0));
+    return s;
+  }();
+  bool found = false;  // the path there
+  for (Place& l : loads_) {
+    if (l.knots != nullptr) continue;
+    Between between(*this, l, series);
+    if (!between.divides()) {
+      if (!std::exchange(found, true)) series.at_places(kPlaces, places.data(), path_.data(), rate_.data());
+      between.take(between.look(0.5 * gauss_rule().s[0]));
+      for (std::size_t q = 0; q < kPlaces; ++q) {
+        const std::size_t at = q * idx(stride_) + idx(l.row);
+        LoadResponse r;
+        between.take(look(l, places[q], path_[at], rate_[at], r));
+      }
+    }
+    l.off_at_ends = std::max(l.off_at_ends, between.off());
+  }
 }
 
 double SmoothLoads::project(const TaylorSeries& series, bool first, LegendreProjection& projection,

@@ -59,12 +59,15 @@ class SmoothLoads {
   }
   /// Adds to the projection what the loads differ from their tangents along the series' path; returns how much of
   /// a change of the path comes back. first: the step is new.
-  /// kinks: takes the loads that pass knots in the step. least_of(row): the force [N m] over the whole step that moves nothing.
-  template <class LeastOf>
+  /// kinks: takes the loads that pass knots in the step.
   double project(const TaylorSeries& series, bool first, LegendreProjection& projection,
-                 LegendreProjection& kinks, const LeastOf& least_of) {
+                 LegendreProjection& kinks);
+  /// Looks at what was projected last between the nodes, for for_rows(). least_of(row): the force [N m] over the whole step that
+  /// moves nothing.
+  template <class LeastOf>
+  void look_between(const TaylorSeries& series, const LeastOf& least_of) {
     for (Place& l : loads_) l.least = least_of(l.row);
-    return project(series, first, projection, kinks);
+    look_between(series);
   }
   /// Whether some of them follow the motion.
   bool follows() const {
@@ -95,17 +98,25 @@ class SmoothLoads {
   double slope_work(const TaylorSeries& series, const Vector& end) const;
 
  private:
+  /// A called load at s of the step, on the series' path.
+  struct Point {
+    double s = 0.0, angle = 0.0, speed = 0.0;  // rad, rad/s
+    double beyond = 0.0;                       // its tangent, on the row [N m]
+    double torque = 0.0;
+  };
   struct Place : TangentLoad, KnottedPlace {
     using TangentLoad::TangentLoad;
     bool kinked = false, unfinished = false;  // what this pass found of the load
     double strongest = 1.0;                   // of the knots passed
     double off_at_ends = 0.0;                 // GaussRule::off_at_ends() [N m], and between the nodes
     double rounding = 0.0, least = 0.0;       // for_rounding(); least_of()
+    // Of the last pass: at the nodes, and with the ends.
+    std::array<double, GaussRule::kNodes> at_nodes{};
+    std::array<Point, GaussRule::kNodes + 2> points{};
   };
   struct Samples;
   double beyond_tangent(const Place& load, const Samples& at, std::size_t q) const;
-  double project(const TaylorSeries& series, bool first, LegendreProjection& projection,
-                 LegendreProjection& kinks);
+  void look_between(const TaylorSeries& series);
   void find_loads(const MotionPoint& nominal);
   double differ_knotted(Place& load, const TaylorSeries& series, NodeForces& forces,
                         LegendreProjection& kinks);
@@ -113,9 +124,8 @@ class SmoothLoads {
   void sample(const Place& load, const double* s, Samples& at) const;
   double add_interval(Place& load, double from, double to, LegendreProjection& kinks) const;
   double differ_called(Place& load, const TaylorSeries& series, NodeForces& forces) const;
-  struct Point;
   class Between;
-  Point look(const Place& load, double s, double along, double rate) const;
+  Point look(const Place& load, double s, double along, double rate, LoadResponse& response) const;
 
   const System& system_;
   int stride_;

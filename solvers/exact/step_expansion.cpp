@@ -196,24 +196,37 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     const double got =
         pass == 0 && expanded_ ? h : series.expand(from.state.z, from.state.v, h, last ? share : tolerance);
     if (got == h && (expanded.turns_back(series) || known.came_further(series))) return {h, true};
-    const auto done = [&] {
+    const double of_jump = std::max(share, kJump * limits.tolerance);
+    const auto as_got = [&] {
       return Attempt{.h = got, .longer = tells_length ? fitting() : StepLength::kUnlimited};
     };
-    if (got < h || !projects || (last && sure)) return done();
-    if (pass == kMaxPasses) return {0.5 * h};
-    const double of_jump = std::max(share, kJump * limits.tolerance);
-    const LoadSeries::Pass made = known.project(series, smooth, pass == 0, friction.holds(), of_jump);
-    const double unseen = made.unseen / of_jump;
-    excess = std::max({made.residual / of_jump, unseen, made.inside / (kInside * limits.tolerance),
-                       made.torque / kTorqueRest});
-    tells_length = excess > unseen && excess <= 1.0;
-    if (excess > 1.0 && h > limits.shortest) {
+    // What leaves too much: a shorter step.
+    const auto shorten = [&]() -> Attempt {
       if (const auto longer = known.find_rounding(smooth)) return {*longer, true};
       // Nearly always a law's knot in the step: a step to just behind it, which is then cut there.
       const auto knot = smooth.first_knot(series, kBeforeEnd);
       if (knot && *knot > kNearStart) return {h * *knot * (1.0 + kBehindKnot), true};
       return {h * std::max(0.2, fitting())};
-    }
+    };
+    const auto done = [&]() -> Attempt {
+      if (projects && h > limits.shortest) {
+        const double between = known.unseen_between(series, smooth, friction.holds(), of_jump) / of_jump;
+        if (between > 1.0) {
+          excess = between;
+          return shorten();
+        }
+      }
+      return as_got();
+    };
+    if (got < h || !projects) return as_got();
+    if (last && sure) return done();
+    if (pass == kMaxPasses) return {0.5 * h};
+    const LoadSeries::Pass made = known.project(series, smooth, pass == 0, friction.holds());
+    const double unseen = made.unseen / of_jump;
+    excess = std::max({made.residual / of_jump, unseen, made.inside / (kInside * limits.tolerance),
+                       made.torque / kTorqueRest});
+    tells_length = excess > unseen && excess <= 1.0;
+    if (excess > 1.0 && h > limits.shortest) return shorten();
     if (made.cut && h > limits.shortest) return {h * *made.cut, true};
     const double seen = std::max(share, kPathRounding);
     if (last && (made.change <= seen || ++looks == kMostLooks)) return done();

@@ -372,9 +372,8 @@ std::array<TaylorSeries::Norm, 2> TaylorSeries::scales_at_nodes(const double* z,
   return scales;
 }
 
-void TaylorSeries::at_nodes(double* z, double* v) const {
-  constexpr int n = GaussRule::kNodes;
-  series_at_nodes(stride_, degree_, coefficients(0), gauss_rule().s.data(), n, z, v);
+void TaylorSeries::at_places(int n, const double* s, double* z, double* v) const {
+  series_at_nodes(stride_, degree_, coefficients(0), s, n, z, v);
   if (v == nullptr) return;
   for (int i = 0; i < n * stride_; ++i) v[i] /= h_;
 }

@@ -176,7 +176,9 @@ class TaylorSeries {
   /// int_0^s (sum P_k u^k) . z' du with columns P_k at p + k stride(), k <= degree.
   double work(const double* p, int degree, double s);
   /// z, and v where it is not null, at the nodes of Gauss's rule: rows of node q at q stride().
-  void at_nodes(double* z, double* v) const;
+  void at_nodes(double* z, double* v) const { at_places(GaussRule::kNodes, gauss_rule().s.data(), z, v); }
+  /// The same at n places s.
+  void at_places(int n, const double* s, double* z, double* v) const;
   /// out = M^-1 rhs.
   void solve_mass(const Vector& rhs, Vector& out);
 
