@@ -1,5 +1,5 @@
 // Ranges of formulas and of their slopes hold every value within (core/law/ranged.hpp), and those of the catalogue's loads too
-// (Load::steepest; elements/curve.cpp).
+// (Load::steepest; elements/machines/speed_gate.cpp).
 #include "core/law/ranged.hpp"
 
 #include <drev/core/law/dual.hpp>

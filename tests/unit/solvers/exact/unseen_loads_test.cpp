@@ -1,5 +1,5 @@
 // What loads do between the points at which exact propagation calls them: narrow curves and gates over the speed, smooth ones of
-// small width, short circuits and pulses, kinks at rest, stops of a law that does not say where it kinks (solvers/exact/smooth_loads.hpp, core/law/ranged.hpp, elements/curve.cpp).
+// small width, short circuits and pulses, kinks at rest, stops of a law that does not say where it kinks (solvers/exact/smooth_loads.hpp, core/law/ranged.hpp, elements/machines/speed_gate.cpp).
 #include <drev/core/law_element.hpp>
 #include <drev/core/model.hpp>
 #include <drev/elements/applied_torque.hpp>

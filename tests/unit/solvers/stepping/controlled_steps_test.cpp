@@ -277,8 +277,8 @@ TEST_CASE("Controlled steps: a short circuit far shorter than the steps of the r
     m.add<Generator>("generator", {"rotor"},
                      {.fault_time = start, .fault_torque = torque, .fault_decay = decay});
     const System s = m.build();
-    for (const char* name : {"average_acceleration", "hht", "generalized_alpha", "bathe", "tr_bdf2", "central_difference",
-                             "sdirk4", "rk4", "dormand_prince"}) {
+    for (const char* name : {"average_acceleration", "hht", "generalized_alpha", "bathe", "tr_bdf2",
+                             "central_difference", "sdirk4", "rk4", "dormand_prince"}) {
       INFO(name << ", fault at " << start << " s");
       State state = State::initial(s);
       REQUIRE(simulate(s, {.scheme = step_scheme(name), .tolerance = 1e-5, .t_end = 10.0}, state, {}).ok());
