@@ -25,9 +25,10 @@ struct LoadResponse {
   double dtorque_dspeed = 0.0;  ///< N m s/rad
 };
 
-/// Ranges of what a load sees: time [s], actual angle [rad] and speed [rad/s]; and bounds of the sizes of its slopes over them.
+/// Ranges of what a load sees: time [s], actual angle [rad], speed and nominal speed [rad/s]; and bounds of the sizes of its slopes
+/// over them.
 struct LoadRanges {
-  Interval t, angle, speed;
+  Interval t, angle, speed, nominal_speed;
 };
 struct LoadSlopes {
   double by_time = 0.0, by_angle = 0.0, by_speed = 0.0;  ///< N m/s, N m/rad, N m s/rad

@@ -18,7 +18,8 @@
 ///                 each of them and on both sides of each bound; exactly one holds everywhere), kinks, gap,
 ///                 closed slopes, and the formula of its scale (AngleScaledForce) with pieces_scale(); a load's
 ///                 table, stretch, harmonics (HarmonicLoad), knots and curves (KnottedLoad), curves scaled by the
-///                 speed (SpeedScaledLoad) and frequencies; an element's parts with describe()
+///                 speed (SpeedScaledLoad), frequencies and bounds of slopes (Load::steepest); an element's parts
+///                 with describe()
 ///   purity        the same input gives the same bits, whatever was evaluated between
 ///   matrices      M, C, K symmetric and positive semi-definite
 ///   speed_ratio_constraints      no constant stiffness and no law sees a nominal motion n that satisfies the

@@ -142,6 +142,36 @@ class FormComparison {
     }
   }
 
+  /// Bounds of the slopes over ranges about the input, against the slopes in its middle and between its ends.
+  void slopes() {
+    const bool follows = load_.depends_on_motion();
+    for (const double wide : {0.0, 1e-3, 1.0}) {
+      const LoadRanges over{.t = {in_.t, in_.t + wide},
+                            .angle = {angle_ - wide, angle_ + wide},
+                            .speed = {in_.speed - wide, in_.speed + wide},
+                            .nominal_speed = {in_.nominal_speed, in_.nominal_speed}};
+      const std::optional<LoadSlopes> bounds = load_.steepest(over);
+      if (!bounds) return;
+      const LoadResponse r = load_.evaluate(in_);
+      LoadInput later = in_;
+      later.t += wide;
+      const auto exceeds = [&](const char* what, double bound, double slope, double rounding) {
+        if (!(std::abs(slope) <= bound + kAgree * std::abs(slope) + rounding))
+          add("steepest",
+              std::string("bounds ") + what + " by " + to_text(bound) + ", the call has " + to_text(slope),
+              in_);
+      };
+      if (follows) exceeds("dtorque_dangle", bounds->by_angle, r.dtorque_dangle, 0.0);
+      if (follows) exceeds("dtorque_dspeed", bounds->by_speed, r.dtorque_dspeed, 0.0);
+      const std::vector<double> breaks = load_.breakpoints();
+      const bool jumps =
+          std::any_of(breaks.begin(), breaks.end(), [&](double t) { return t >= in_.t && t <= later.t; });
+      const double rise = load_.evaluate(later).torque - r.torque;
+      if (wide > 0.0 && !jumps)
+        exceeds("the slope by the time", bounds->by_time, rise / wide, kAgree * std::abs(r.torque) / wide);
+    }
+  }
+
   /// At a steady speed.
   void scaled_by_speed(const SpeedScaledLoad& stated) {
     const LoadInput steady{
@@ -222,6 +252,7 @@ std::vector<Contradiction> contradictions(const Load& load, std::span<const Load
   compare_load(load, at, found);
   for (const LoadInput& in : at) {
     FormComparison forms(load, in, found);
+    forms.slopes();
     if (const auto* stated = dynamic_cast<const HarmonicLoad*>(&load)) forms.harmonics(*stated);
     if (const auto* stated = dynamic_cast<const KnottedLoad*>(&load)) forms.knots(*stated);
     if (const auto* stated = dynamic_cast<const SpeedScaledLoad*>(&load)) forms.scaled_by_speed(*stated);

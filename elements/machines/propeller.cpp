@@ -21,7 +21,7 @@ std::optional<LoadSlopes> Propeller::steepest(const LoadRanges& over) const {
   Ranged harmonics;
   for (const Harmonic& h : params_.harmonics)
     harmonics = harmonics + h.amplitude * cos(h.order * x[0] + h.phase);
-  return slopes_of(torque(x[1], harmonics, size_of(over.speed)));
+  return slopes_of(torque(x[1], harmonics, size_of(over.nominal_speed)));
 }
 
 }  // namespace drev

@@ -62,7 +62,7 @@ void SmoothLoads::add_slopes(TaylorSeries& series) const {
 SmoothLoads::Point SmoothLoads::look(const Place& l, double s, double along, double rate,
                                      LoadResponse& r) const {
   const double turn = (phi_[1] + phi_[2] * s) * s, deviation = l.coeff * along;
-  const double nominal_speed = l.ratio * (phi_[1] + 2.0 * phi_[2] * s) / h_;
+  const double nominal_speed = nominal_speed_of(l, s);
   const LoadInput in{.t = t_ + h_ * s,
                      .nominal_angle = l.ratio * (nominal_ + turn),
                      .deviation = deviation,
@@ -123,6 +123,9 @@ class SmoothLoads::Between {
       over.angle = hull(over.angle, {p.angle, p.angle});
       over.speed = hull(over.speed, {p.speed, p.speed});
     }
+    const double first = of_.nominal_speed_of(load_, points.front().s),
+                 last = of_.nominal_speed_of(load_, points.back().s);
+    over.nominal_speed = {std::min(first, last), std::max(first, last)};
     const auto widen = [](Interval& x) {
       const double by = kBeyond * (x.high - x.low);
       x = {x.low - by, x.high + by};

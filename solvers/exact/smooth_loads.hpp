@@ -125,6 +125,9 @@ class SmoothLoads {
   double add_interval(Place& load, double from, double to, LegendreProjection& kinks) const;
   double differ_called(Place& load, const TaylorSeries& series, NodeForces& forces) const;
   class Between;
+  double nominal_speed_of(const Place& load, double s) const {
+    return load.ratio * (phi_[1] + 2.0 * phi_[2] * s) / h_;
+  }
   Point look(const Place& load, double s, double along, double rate, LoadResponse& response) const;
 
   const System& system_;

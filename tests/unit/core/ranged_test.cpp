@@ -87,7 +87,8 @@ TEST_CASE("How steep the loads of the catalogue are: bounds over ranges against 
                                                      {.op = Op::variable, .a = 2},
                                                      {.op = Op::subtract, .a = 2, .b = 3}}),
                                  .gate = gate});
-  const Propeller propeller({.rated_torque = 10.0, .rated_speed = 10.0, .harmonics = {{4.0, 0.1, 0.3}}});
+  const Propeller propeller(
+      {.rated_torque = 10.0, .rated_speed = 10.0, .damping_factor = 3.0, .harmonics = {{4.0, 0.1, 0.3}}});
   const Generator generator({.fault_time = 0.5,
                              .fault_torque = 10.0,
                              .fault_torque_double = -5.0,
@@ -106,6 +107,7 @@ TEST_CASE("How steep the loads of the catalogue are: bounds over ranges against 
       draw(over.t, 0.0, 2.0);
       draw(over.angle, -3.0, 3.0);
       draw(over.speed, -40.0, 40.0);
+      draw(over.nominal_speed, -40.0, 40.0);
       const auto slopes = load->steepest(over);
       REQUIRE(slopes);
       for (int k = 0; k < 10; ++k) {
@@ -114,6 +116,7 @@ TEST_CASE("How steep the loads of the catalogue are: bounds over ranges against 
         in.t = at(over.t);
         in.deviation = at(over.angle);
         in.speed = at(over.speed);
+        in.nominal_speed = at(over.nominal_speed);
         const LoadResponse r = load->evaluate(in);
         CHECK(std::abs(r.dtorque_dangle) <= slopes->by_angle * (1.0 + 1e-12));
         CHECK(std::abs(r.dtorque_dspeed) <= slopes->by_speed * (1.0 + 1e-12));

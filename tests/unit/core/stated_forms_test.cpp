@@ -13,6 +13,7 @@
 #include <drev/core/verify.hpp>
 #include <drev/elements/catalogue.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -109,6 +110,21 @@ struct Hum final : LoadOnly<Load> {
   }
   bool depends_on_motion() const override { return false; }
   std::vector<double> frequencies() const override { return stated; }
+};
+
+/// 2 cos(5 theta) - 0.3 w |w| + sin(40 t), with bounds of its slopes.
+struct Fan final : LoadOnly<Load> {
+  double by_angle = 10.0, by_speed = 0.6, by_time = 40.0;
+  LoadResponse evaluate(const LoadInput& in) const override {
+    const double a = in.nominal_angle + in.deviation, w = in.speed;
+    return {.torque = 2.0 * std::cos(5.0 * a) - 0.3 * w * std::abs(w) + std::sin(40.0 * in.t),
+            .dtorque_dangle = -10.0 * std::sin(5.0 * a),
+            .dtorque_dspeed = -0.6 * std::abs(w)};
+  }
+  std::optional<LoadSlopes> steepest(const LoadRanges& over) const override {
+    return LoadSlopes{by_time, by_angle,
+                      by_speed * std::max(std::abs(over.speed.low), std::abs(over.speed.high))};
+  }
 };
 
 /// k r(theta) x with r = 1 + 0.2 cos(3 theta), k = 50 N m/rad.
@@ -215,6 +231,15 @@ TEST_CASE("Frequencies that do not make up a load are found") {
   CHECK(report_of<Hum>({}, 1) == "");
   CHECK(contains(report_of<Hum>([](Hum& h) { h.stated = {3.0}; }, 1), "frequencies: leave "));
   CHECK(contains(report_of<Hum>([](Hum& h) { h.stated = {0.7, 3.1}; }, 1), "frequencies: leave "));
+}
+
+TEST_CASE("Bounds of a load's slopes that it exceeds are found") {
+  CHECK(report_of<Fan>({}, 1) == "");
+  CHECK(
+      contains(report_of<Fan>([](Fan& f) { f.by_angle = 9.0; }, 1), "steepest: bounds dtorque_dangle by 9"));
+  CHECK(contains(report_of<Fan>([](Fan& f) { f.by_speed = 0.5; }, 1), "steepest: bounds dtorque_dspeed by "));
+  CHECK(contains(report_of<Fan>([](Fan& f) { f.by_time = 30.0; }, 1),
+                 "steepest: bounds the slope by the time by 30"));
 }
 
 TEST_CASE("The formula of a law's scale that is not the scale is found") {
