@@ -145,6 +145,8 @@ class FormComparison {
   /// Bounds of the slopes over ranges about the input, against the slopes in its middle and between its ends.
   void slopes() {
     const bool follows = load_.depends_on_motion();
+    const LoadResponse r = load_.evaluate(in_);
+    const std::vector<double> breaks = load_.breakpoints();
     for (const double wide : {0.0, 1e-3, 1.0}) {
       const LoadRanges over{.t = {in_.t, in_.t + wide},
                             .angle = {angle_ - wide, angle_ + wide},
@@ -152,7 +154,6 @@ class FormComparison {
                             .nominal_speed = {in_.nominal_speed, in_.nominal_speed}};
       const std::optional<LoadSlopes> bounds = load_.steepest(over);
       if (!bounds) return;
-      const LoadResponse r = load_.evaluate(in_);
       LoadInput later = in_;
       later.t += wide;
       const auto exceeds = [&](const char* what, double bound, double slope, double rounding) {
@@ -163,7 +164,6 @@ class FormComparison {
       };
       if (follows) exceeds("dtorque_dangle", bounds->by_angle, r.dtorque_dangle, 0.0);
       if (follows) exceeds("dtorque_dspeed", bounds->by_speed, r.dtorque_dspeed, 0.0);
-      const std::vector<double> breaks = load_.breakpoints();
       const bool jumps =
           std::any_of(breaks.begin(), breaks.end(), [&](double t) { return t >= in_.t && t <= later.t; });
       const double rise = load_.evaluate(later).torque - r.torque;

@@ -7,6 +7,7 @@
 /// Bounds hold but for rounding; where a number stands in a formula more than once they are wider than need be.
 /// Source: R. E. Moore, R. B. Kearfott, M. J. Cloud, Introduction to Interval Analysis, SIAM, 2009, chapters 2 and 3.
 #include <drev/core/load.hpp>
+#include <drev/core/units.hpp>
 
 #include <algorithm>
 #include <array>
@@ -77,7 +78,6 @@ Interval rising(const Interval& x, const F& f) {
   return {f(x.low), f(x.high)};
 }
 inline Interval cos(const Interval& x) {
-  constexpr double kPi = 3.14159265358979323846;
   if (!(x.high - x.low < 2.0 * kPi)) return {-1.0, 1.0};
   Interval f{std::min(std::cos(x.low), std::cos(x.high)), std::max(std::cos(x.low), std::cos(x.high))};
   // A multiple n of pi within: the top where n is even.
@@ -86,8 +86,7 @@ inline Interval cos(const Interval& x) {
   return f;
 }
 inline Interval sin(const Interval& x) {
-  constexpr double kQuarter = 1.57079632679489661923;
-  return cos({x.low - kQuarter, x.high - kQuarter});
+  return cos({x.low - 0.5 * kPi, x.high - 0.5 * kPi});
 }
 /// x^n; of x >= 0 where n is no whole number.
 inline Interval pow(const Interval& x, double n) {

@@ -107,18 +107,21 @@ double ProjectedLaws::project(const TaylorSeries& series, LegendreProjection& pr
 
 void ProjectedLaws::look_between(const TaylorSeries& series) {
   const GaussRule& rule = gauss_rule();
-  for (Law& law : laws_) law.off = std::abs(NodeFit(law.at_nodes).at(0.0));
+  std::vector<NodeFit> fits;
+  std::vector<Point> last;
+  for (Law& law : laws_) {
+    law.off = std::abs(fits.emplace_back(law.at_nodes).at(0.0));
+    last.push_back({.response = {}, .x = law.x, .x_dot = law.x_dot});
+  }
   const auto stand = [&](double s) {
     series.evaluate(s, z_, v_);
     assembler_.set_time(t_ + h_ * s);
   };
-  const auto take = [&](Law& law, double s) {
-    const Point p = look(law);
-    law.off = std::max(law.off, std::abs(p.beyond - NodeFit(law.at_nodes).at(s)));
+  const auto take = [&](std::size_t j, double s) {
+    const Point p = look(laws_[j]);
+    laws_[j].off = std::max(laws_[j].off, std::abs(p.beyond - fits[j].at(s)));
     return p;
   };
-  std::vector<Point> last;
-  for (const Law& law : laws_) last.push_back({.response = {}, .x = law.x, .x_dot = law.x_dot});
   double s_last = 0.0;
   for (std::size_t i = 0; i <= GaussRule::kNodes; ++i) {
     const double s = i == 0                  ? 0.5 * rule.s[0]
@@ -126,14 +129,13 @@ void ProjectedLaws::look_between(const TaylorSeries& series) {
                                              : GaussRule::kAheadOfEnd;
     stand(s);
     for (std::size_t j = 0; j < laws_.size(); ++j) {
-      Law& law = laws_[j];
-      const Point p = take(law, s);
+      const Point p = take(j, s);
       const double length = (s - s_last) * h_;
       // A stop may be reached just where the deflection turns.
       if (const auto turn = cubic_peak(last[j].x, last[j].x_dot, p.x, p.x_dot, length)) {
         const double at = s_last + turn->s * (s - s_last);
         stand(at);
-        take(law, at);
+        take(j, at);
         stand(s);
       }
       last[j] = p;

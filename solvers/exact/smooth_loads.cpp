@@ -91,8 +91,9 @@ class SmoothLoads::Between {
 
   /// Looks wherever the load may do what the nodes do not show. False: nobody knows what it may do.
   bool divides() {
-    if (!bound(load_.points)) return false;
-    if (hides(load_.points))
+    const std::optional<double> may = bound(load_.points);
+    if (!may) return false;
+    if (hides(load_.points, *may))
       for (std::size_t i = 0; i + 1 < load_.points.size(); ++i)
         divide(load_.points[i], load_.points[i + 1], kDeepest);
     return true;
@@ -141,10 +142,9 @@ class SmoothLoads::Between {
                                     change(slopes->by_speed, over.speed));
   }
 
-  /// Whether it may change by far more than the points show, and move something by it.
-  bool hides(std::span<const Point> points) const {
-    const double may = bound(points).value_or(0.0), length = points.back().s - points.front().s;
-    if (may * length <= load_.least) return false;
+  /// Whether it may change, by `may` at most, by far more than the points show, and move something by it.
+  bool hides(std::span<const Point> points, double may) const {
+    if (may * (points.back().s - points.front().s) <= load_.least) return false;
     double shown = 0.0;
     for (std::size_t i = 0; i + 1 < points.size(); ++i)
       shown += std::abs(load_.coeff * (points[i + 1].torque - points[i].torque));
@@ -155,7 +155,7 @@ class SmoothLoads::Between {
     if (looks_ >= kMostLooks) return;
     const Point middle = take(look(0.5 * (a.s + b.s)));
     const std::array<Point, 3> points{a, middle, b};
-    if (depth == 0 || !hides(points)) return;
+    if (depth == 0 || !hides(points, bound(points).value_or(0.0))) return;
     divide(a, middle, depth - 1);
     divide(middle, b, depth - 1);
   }
