@@ -85,9 +85,7 @@ inline Interval cos(const Interval& x) {
     std::fmod(n, 2.0) == 0.0 ? f.high = 1.0 : f.low = -1.0;
   return f;
 }
-inline Interval sin(const Interval& x) {
-  return cos({x.low - 0.5 * kPi, x.high - 0.5 * kPi});
-}
+inline Interval sin(const Interval& x) { return cos({x.low - 0.5 * kPi, x.high - 0.5 * kPi}); }
 /// x^n; of x >= 0 where n is no whole number.
 inline Interval pow(const Interval& x, double n) {
   if (n == 0.0) return {1.0, 1.0};
