@@ -229,7 +229,12 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     if (excess > 1.0 && h > limits.shortest) return shorten();
     if (made.cut && h > limits.shortest) return {h * *made.cut, true};
     const double seen = std::max(share, kPathRounding);
-    if (last && (made.change <= seen || ++looks == kMostLooks)) return done();
+    if (last && made.change <= seen) return done();
+    if (last && ++looks == kMostLooks) {
+      // What is left is rounding, or the path goes to and fro beside a kink.
+      if (made.change <= of_jump || h <= limits.shortest) return done();
+      return {0.5 * h};
+    }
     contraction_ = std::max(made.contraction, 1e-300);
     if (pass == 0) first_change_ = made.change;
     // The factor is that of this pass's path: the next one may lead over a kink from which this one kept clear, so that the
