@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/accuracy/student.hpp"
+
 namespace drev::app {
 
 namespace {
@@ -78,7 +80,7 @@ void VariantStatistics::finish() {
     const auto n = static_cast<double>(used_[f]);
     if (used_[f] > 1) s.deviation = std::sqrt(squares_[f] / (n - 1.0));
     const bool known = has_intervals_ && used_[f] > 1;
-    if (known) s.mean_error = kNormal95 * s.deviation / std::sqrt(n);
+    if (known) s.mean_error = student_95(n - 1.0) * s.deviation / std::sqrt(n);
     std::sort(values_[f].begin(), values_[f].end());
     const auto at_rank = [&](double rank) {  // the value that `rank` values do not exceed
       if (!values_[f].empty()) {  // the i-th value stands at the rank i - 1/2: the median is the middle one

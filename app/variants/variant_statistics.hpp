@@ -29,7 +29,7 @@ struct FigureStatistics {
   FigureColumn column;
   std::uint64_t count = 0;  ///< number of finite values; the others are left out
   double mean = 0.0, deviation = 0.0;
-  /// Half the 95 % interval of the mean for independent variants, 1.96 s / sqrt(n); not a number where it is not known: of
+  /// Half the 95 % interval of the mean for independent variants, t s/sqrt(n) with Student's t; not a number where it is not known: of
   /// what is no sample, and of a single point or value.
   double mean_error = kUnknown;
   double min = 0.0, max = 0.0;

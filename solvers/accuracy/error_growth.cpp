@@ -8,20 +8,13 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/accuracy/student.hpp"
+
 namespace drev {
 
 namespace {
 
 constexpr double kSeparation = 1e-9;  // far above rounding, far below what bends the motion
-
-/// 97.5 % quantile of Student's t with n degrees of freedom, n >= 1.
-double student(int n) {
-  constexpr std::array<double, 20> table{12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365,
-                                         2.306,  2.262, 2.228, 2.201, 2.179, 2.160, 2.145,
-                                         2.131,  2.120, 2.110, 2.101, 2.093, 2.086};
-  // Beyond: Cornish-Fisher's first terms, right to 1e-3.
-  return n <= 20 ? table[idx(n - 1)] : 1.95996 + 2.3722 / n + 2.8225 / (static_cast<double>(n) * n);
-}
 
 /// Largest |z| and |v| of a run.
 class Scale final : public Observer {
@@ -68,8 +61,7 @@ Estimate batch_mean(const std::vector<double>& samples, int batches) {
   const double k = static_cast<double>(count);
   for (const double m : means) mean += m / k;
   for (const double m : means) squares += (m - mean) * (m - mean);
-  return {mean, student(static_cast<int>(count) - 1) * std::sqrt(squares / (k - 1.0) / k),
-          Estimate::Kind::interval};
+  return {mean, student_95(k - 1.0) * std::sqrt(squares / (k - 1.0) / k), Estimate::Kind::interval};
 }
 
 double ErrorGrowth::time_of(double factor) const {

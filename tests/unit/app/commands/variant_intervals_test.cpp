@@ -85,5 +85,8 @@ TEST_CASE("One point of a sample tells no interval") {
     CHECK_FALSE(contains(study(path, (folder / (sample + "t")).string(), sample, false).out, "+-"));
   }
   const auto two = study(path, (folder / "two").string(), "random:2");
-  CHECK(figure(Json::parse(two.out)).at("mean_error") > 0.0);
+  const Json f = figure(Json::parse(two.out));
+  // s/sqrt(2) times the 97.5 % quantile of Student's t with 1 degree of freedom.
+  CHECK(f.at("mean_error").get<double>() ==
+        Approx(12.706 * f.at("deviation").get<double>() / std::sqrt(2.0)).epsilon(1e-4));
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "solvers/accuracy/student.hpp"
 #include "tests/catch.hpp"
 #include "tests/problems/chaotic_oscillator.hpp"
 
@@ -92,4 +93,14 @@ TEST_CASE("Batch means: interval of independent samples") {
   CHECK(two.error == Approx(12.706));
   CHECK(two.kind == Estimate::Kind::interval);
   CHECK(std::isinf(batch_mean({1.0}).error));
+}
+
+TEST_CASE("Student's t: quantiles of the table and beyond it, published ones") {
+  // Abramowitz and Stegun, 1964, table 26.10.
+  CHECK(student_95(1.0) == Approx(12.706));
+  CHECK(student_95(20.0) == Approx(2.086));
+  CHECK(student_95(21.0) == Approx(2.080).epsilon(1e-3));
+  CHECK(student_95(30.0) == Approx(2.042).epsilon(1e-3));
+  CHECK(student_95(120.0) == Approx(1.980).epsilon(1e-3));
+  CHECK(student_95(INFINITY) == Approx(1.960).epsilon(1e-4));
 }
