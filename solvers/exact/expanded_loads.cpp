@@ -11,8 +11,9 @@ namespace {
 
 // Turn allowed for in a step, relative to the turn at the rate of the step before.
 constexpr double kFurther = 1.25;
-constexpr double kOfTorque = 1e-18;  // terms of P and G that are left out, relative to the torque
-constexpr double kNearEdge = 0.95;   // largest part of the way to the end of a cell that a step takes
+constexpr double kOfTorque = 1e-18;      // terms of P and G that are left out, relative to the torque
+constexpr double kNearEdge = 0.95;       // largest part of the way to the end of a cell that a step takes
+constexpr double kLoadRounding = 1e-14;  // of a torque summed up along a step, relative to its parts
 constexpr double kOnes[kLanes] = {1, 1, 1, 1, 1, 1, 1, 1};
 
 }  // namespace
@@ -116,6 +117,47 @@ struct ExpandedLoads::Term {
       rest = rest - a * b;
     }
     store(rest, out);
+  }
+};
+
+/// out: what the torques at s = 1, where the angles' terms below s^k have led, differ from their tangents by, less the terms of that
+/// below s^(k-1); size: of the parts of this difference.
+struct ExpandedLoads::LeftOut {
+  template <class L>
+  [[gnu::always_inline]] static void run(int k, const Group* group, double* out, double* size) {
+    L a, b, x{}, torque{}, terms{};
+    for (int m = k - 1; m > 0; --m) {
+      load(group->x.data() + m * kLanes, a);
+      x += a;
+    }
+    for (int m = k - 2; m > 0; --m) {
+      load(group->rest.data() + m * kLanes, a);
+      terms += a;
+    }
+    for (int j = group->top; j > 0; --j) {
+      load(group->p.data() + j * kLanes, a);
+      torque = (torque + a) * x;
+    }
+    load(group->slope.data(), a);
+    torque = torque - a * x;
+    if (group->speeds) {
+      L w{}, start{}, curve{};
+      for (int m = k - 2; m >= 0; --m) {
+        load(group->rate.data() + m * kLanes, start);
+        w += start;
+      }
+      for (int j = group->top; j > 0; --j) {
+        load(group->g.data() + j * kLanes, a);
+        curve = (curve + a) * x;
+      }
+      load(group->g.data(), a);
+      load(group->speed_slope.data(), b);
+      torque += (curve + a) * w * w - a * start * start - b * (w - start);
+    }
+    store(torque - terms, out);
+    magnitude(torque);
+    magnitude(terms);
+    store(torque + terms, size);
   }
 };
 
@@ -276,15 +318,15 @@ void ExpandedLoads::add_to(TaylorSeries& series, double h, const std::array<doub
   for (Group& group : groups_) {
     for (std::size_t lane = 0; lane < idx(group.count); ++lane)
       place(loads_[idx(group.load[lane])], group, lane);
-    // A little more than mattered in the step before, or all.
-    for (int last = std::min(group.top + 2, kTerms - 1);; last = kTerms - 1) {
+    // A little more than mattered in the step before, or all; of a torque that is even or odd every second term is zero.
+    for (int last = std::min(group.top + 3, kTerms - 1);; last = kTerms - 1) {
       last = std::min(last, group.cell_terms + 2);
       run_widest<Start>(last, &group, sizes.data());
       double sum = 0.0;
       for (int j = 0; j <= last; ++j) sum += sizes[idx(j)];
       group.top = last;
       while (group.top > 1 && sizes[idx(group.top)] <= kOfTorque * sum) --group.top;
-      if (group.top < last || last == std::min(kTerms - 1, group.cell_terms + 2)) break;
+      if (group.top < last - 1 || last == std::min(kTerms - 1, group.cell_terms + 2)) break;
     }
     for (std::size_t lane = 0; lane < idx(group.count); ++lane) {
       Load& l = loads_[idx(group.load[lane])];
@@ -319,7 +361,6 @@ void ExpandedLoads::gather(Group& group, const TaylorSeries& series, int m) cons
 
 double ExpandedLoads::add(const TaylorSeries& series, int k, double factor, double* term) {
   const int m = k - 2;
-  std::array<double, kLanes> rest;
   double most = 0.0;
   for (Group& group : groups_) {
     gather(group, series, m + 1);
@@ -330,7 +371,8 @@ double ExpandedLoads::add(const TaylorSeries& series, int k, double factor, doub
       }
       continue;
     }
-    run_widest<Term>(m, &group, rest.data());
+    double* rest = group.rest.data() + idx(m) * kLanes;
+    run_widest<Term>(m, &group, rest);
     for (std::size_t lane = 0; lane < idx(group.count); ++lane)
       for (const Entry& e : loads_[idx(group.load[lane])].gain) {
         const double added = e.coeff * rest[lane] * factor;
@@ -339,6 +381,22 @@ double ExpandedLoads::add(const TaylorSeries& series, int k, double factor, doub
       }
   }
   return most;
+}
+
+void ExpandedLoads::note_left_out(const TaylorSeries& series, int k, double factor,
+                                  TaylorSeries::Norm& most) const {
+  OneLanes left, size;
+  for (const Group& group : groups_) {
+    run_widest<LeftOut>(k, &group, left.data(), size.data());
+    for (std::size_t lane = 0; lane < idx(group.count); ++lane) {
+      const Load& l = loads_[idx(group.load[lane])];
+      if (!(std::abs(left[lane]) > kLoadRounding * (std::abs(l.torque) + size[lane]))) continue;
+      for (const Entry& e : l.gain) {
+        double& largest = most[idx(series.kind(e.index))];
+        largest = std::max(largest, std::abs(factor * e.coeff * left[lane]));
+      }
+    }
+  }
 }
 
 bool ExpandedLoads::came_further(const TaylorSeries& series) {

@@ -61,6 +61,8 @@ class ExpandedLoads final : public TermForces {
   /// The part of the step over which the loads' polynomials hold, <= 1.
   double part_held() const { return part_held_; }
   double add(const TaylorSeries& series, int k, double factor, double* term) override;
+  void note_left_out(const TaylorSeries& series, int k, double factor,
+                     TaylorSeries::Norm& most) const override;
   /// Whether, in the expanded series, an angle came further than was allowed for: the step is to be expanded again.
   bool came_further(const TaylorSeries& series);
 
@@ -107,10 +109,12 @@ class ExpandedLoads final : public TermForces {
     TermLanes p{}, g{};
     // Series of the row's motion, of x and w; of G(x) and w^2; and of the powers of x from the second on.
     SeriesLanes along{}, x{}, rate{}, curve{}, square{};
+    SeriesLanes rest{};  // what the torque differs from its tangent
     std::vector<double> powers;
   };
   struct Start;
   struct Term;
+  struct LeftOut;
   struct Work;
   void find_groups(const MotionPoint& nominal);
   void place(Load& load, Group& group, std::size_t lane);

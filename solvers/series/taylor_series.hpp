@@ -42,6 +42,9 @@ class TermForces {
   /// Adds what they make of term k: M^-1 f_{k-2} times factor = h^2/(k (k - 1)). Returns the largest of what they added,
   /// or infinity for as much as the whole term: what tells how far their own series is from its end.
   virtual double add(const TaylorSeries& series, int k, double factor, double* term) = 0;
+  /// Raises `most`, by kind, to factor times the accelerations M^-1 f by what the terms of f up to s^(k-2) leave out of it at s = 1.
+  virtual void note_left_out(const TaylorSeries& /*series*/, int /*k*/, double /*factor*/,
+                             std::array<double, 2>& /*most*/) const {}
 
  protected:
   ~TermForces() = default;
@@ -276,6 +279,7 @@ class TaylorSeries {
   void sum_sizes(int first, int count, const double* weight, const Norm& tail, const Norm& other_tail,
                  double* out) const;
   bool add_term_forces(int k, double factor, double* term);
+  Norm left_out(int k) const;
   void note_scale(const Vector& z, const Vector& v);
   Norm norm(const double* x) const;
 
