@@ -203,9 +203,9 @@ bool ExpandedLoads::takes(const System& system, const LoadTerm& term) {
          system.knotted_loads().curves_of(*term.load) != nullptr;
 }
 
-bool ExpandedLoads::holds(const LoadTerm& term, bool constant) {
+bool ExpandedLoads::holds(const System& system, const LoadTerm& term, bool constant) {
   const auto* knots = dynamic_cast<const KnottedLoad*>(term.load);
-  return constant || knots == nullptr || !knots->piece_follows_speed();
+  return (constant && system.ratio(term.node) != 0.0) || knots == nullptr || !knots->piece_follows_speed();
 }
 
 void ExpandedLoads::add(const LoadTerm& term, TaylorSeries& series) {
@@ -237,7 +237,7 @@ void ExpandedLoads::find_groups(const MotionPoint& nominal) {
   knotted_ = false;
   for (std::size_t i = 0; i < loads_.size(); ++i) {
     Load& load = loads_[i];
-    load.acts = holds(*load.term, constant);
+    load.acts = holds(system_, *load.term, constant);
     load.watched = false;
     load.contraction = 0.0;
     if (!load.acts) continue;

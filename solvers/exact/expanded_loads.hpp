@@ -31,7 +31,7 @@ class ExpandedLoads final : public TermForces {
     return nominal.rate != 0.0 && nominal.acceleration == 0.0;
   }
   /// Whether a load's cubics hold then, or else: they are those of a nominal speed.
-  static bool holds(const LoadTerm& term, bool constant);
+  static bool holds(const System& system, const LoadTerm& term, bool constant);
   void add(const LoadTerm& term, TaylorSeries& series);
 
   struct Load : TangentLoad, KnottedPlace {  // of knots: P is a cubic times a curve

@@ -14,6 +14,8 @@ constexpr int kMostKnots = 64;  // knots of one load in a step; more of them end
 // A knot so close to the step's ends need not end it, relative to the step.
 constexpr double kNearSpanEnd = 1e-6;
 constexpr int kMaxKnotNewton = 20;
+constexpr double kAtTurn =
+    0.5;  // part of a step in which an angle turns back beside a knot, to be tried next
 
 struct Cubic {
   double value, slope;
@@ -108,6 +110,19 @@ double SmoothLoads::add_interval(Place& l, double from, double to, LegendreProje
   return l.feedback ? 0.5 * h_ * h_ * slope + h_ * speed_slope : 0.0;
 }
 
+/// s of the first knot inside the step that the monotone path, turn_, passes until it ends at `end`; 1: there is none.
+double SmoothLoads::first_knot_inside(const Place& l, double end) const {
+  CubicPiece piece = l.piece;
+  for (int count = 0; count < kMostKnots; ++count) {
+    const double bound = (end > 0.0 ? piece.high : piece.low) - l.angle;
+    if (end > 0.0 ? end <= bound : end >= bound) break;
+    const double s = place_of(turn_, bound, 0.0, 0.0, end);
+    if (s > kNearSpanEnd) return s < 1.0 - kNearSpanEnd ? s : 1.0;
+    piece = l.knots->piece(l.angle + bound, end, l.piece_speed);
+  }
+  return 1.0;
+}
+
 /// Gauss's nodes between each two knots that the monotone path, turn_, passes until it ends at `end`.
 double SmoothLoads::pass_knots(Place& l, const TaylorSeries& series, double end, LegendreProjection& kinks) {
   const bool rises = end > 0.0;
@@ -148,8 +163,6 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   l.kinked = l.unfinished = false;
   l.off_at_ends = 0.0;
   l.strongest = 1.0;
-  // It bends at speeds, too, which no knot tells: steps become so short that the nodes follow it.
-  if (l.feedback && l.knots->piece_follows_speed()) return differ_called(l, series, forces);
   Samples at;
   double low = 0.0, high = 0.0, slowest = 1e300, fastest = -1e300;
   for (std::size_t q = 0; q < kNodes; ++q) {
@@ -182,6 +195,13 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
     for (std::size_t k = 1; k < 3; ++k) turn_[k] += l.ratio * phi_[k];
     for (const double term : turn_) end += term;
     knots = rises ? end > ahead : end < ahead;
+  }
+  // It bends at speeds, too, which no knot tells, so that the nodes have to follow it: a step ends at its knot.
+  if (l.feedback && l.knots->piece_follows_speed()) {
+    if (knots) l.strongest = monotone ? first_knot_inside(l, end) : kAtTurn;
+    l.kinked = l.unfinished = l.strongest < 1.0;
+    if (l.kinked) places_.push_back(l.strongest);
+    return differ_called(l, series, forces);
   }
   if (knots && monotone) return pass_knots(l, series, end, kinks);
   // Its angle may turn back in the step: each node on its own side of the knots.

@@ -70,7 +70,7 @@ LoadSeries::LoadSeries(const System& system, TaylorSeries& series)
     }
     const bool expanded = ExpandedLoads::takes(system, term);
     if (expanded) expanded_.add(term, series);
-    if (!expanded || !ExpandedLoads::holds(term, false)) smooth_.add(term, expanded);
+    if (!expanded || !ExpandedLoads::holds(system, term, false)) smooth_.add(term, expanded);
   }
 }
 

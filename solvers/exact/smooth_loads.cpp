@@ -21,7 +21,7 @@ void SmoothLoads::find_loads(const MotionPoint& nominal) {
   constant_ = constant;
   loads_.clear();
   for (const Added& added : all_) {
-    if (added.expanded && ExpandedLoads::holds(*added.term, constant)) continue;
+    if (added.expanded && ExpandedLoads::holds(system_, *added.term, constant)) continue;
     loads_.emplace_back(system_, *added.term);
     loads_.back().knots = dynamic_cast<const KnottedLoad*>(added.term->load);
   }

@@ -120,6 +120,7 @@ class SmoothLoads {
   void find_loads(const MotionPoint& nominal);
   double differ_knotted(Place& load, const TaylorSeries& series, NodeForces& forces,
                         LegendreProjection& kinks);
+  double first_knot_inside(const Place& load, double end) const;
   double pass_knots(Place& load, const TaylorSeries& series, double end, LegendreProjection& kinks);
   void sample(const Place& load, const double* s, Samples& at) const;
   double add_interval(Place& load, double from, double to, LegendreProjection& kinks) const;

@@ -226,8 +226,8 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     excess = std::max({made.residual / of_jump, unseen, made.inside / (kInside * limits.tolerance),
                        made.torque / kTorqueRest});
     tells_length = excess > unseen && excess <= 1.0;
-    if (excess > 1.0 && h > limits.shortest) return shorten();
     if (made.cut && h > limits.shortest) return {h * *made.cut, true};
+    if (excess > 1.0 && h > limits.shortest) return shorten();
     const double seen = std::max(share, kPathRounding);
     if (last && made.change <= seen) return done();
     if (last && ++looks == kMostLooks) {
