@@ -11,8 +11,9 @@ namespace drev {
 
 namespace {
 
-// Rounding of a term, relative to the largest term of an angle's series.
-constexpr double kTermRounding = 1e-13;
+// Least term that tells which way an angle leaves a knot, relative to the largest: it comes over the knot by its square at most, and
+// what is projected is off by more than rounding at the step's start.
+constexpr double kLeastLead = 1e-8;
 // Error of the path inside a step, relative to the rest that the projection leaves: 1/(4 D^2).
 constexpr double kPathRest = 4e-3;
 // Error of the step's end, relative to the same: (2 D + 3) j_{D+1}(3/2), see legendre_projection.hpp.
@@ -335,11 +336,11 @@ std::optional<double> LoadSeries::first_knot(const TaylorSeries& series, double 
       g.assign(1, std::max(0.0, side * (bound - l.angle)));
       for (std::size_t k = 1; k <= degree; ++k)
         g.push_back(-side * angle_term(l, series, static_cast<int>(k)));
-      // On the knot itself, as at rest, the first term that is not rounding tells which way the angle goes.
+      // On the knot itself, as at rest, the first term that counts tells which way the angle goes.
       double largest = 0.0;
       for (const double term : g) largest = std::max(largest, std::abs(term));
       std::size_t lead = 0;
-      while (lead <= degree && std::abs(g[lead]) <= kTermRounding * largest) g[lead++] = 0.0;
+      while (lead <= degree && std::abs(g[lead]) <= kLeastLead * largest) g[lead++] = 0.0;
       if (lead > degree) continue;
       const std::optional<double> s = g[lead] < 0.0 ? std::optional(0.0) : first_crossing(g, end);
       if (!s) continue;
