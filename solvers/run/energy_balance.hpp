@@ -27,8 +27,10 @@ struct Balance {
 };
 
 struct EnergyBalance : Balance<double> {
-  /// worst_imbalance over scale [-]; 0 for a run without energy.
-  double relative_error() const { return scale > kNoEnergy ? worst_imbalance / scale : 0.0; }
+  /// J, kNoEnergy or more: rounding of the energy that shafts store by the difference of angles as large as those at the start.
+  double rounding = kNoEnergy;
+  /// worst_imbalance over scale [-]; 0 for a run whose energy is rounding.
+  double relative_error() const { return scale > rounding ? worst_imbalance / scale : 0.0; }
 };
 
 /// Enters a step that ends at t [s]: what is kinetic and stored there, what was put in and what dissipated

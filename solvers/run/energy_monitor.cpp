@@ -1,6 +1,8 @@
 #include "solvers/run/energy_monitor.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solvers/linear/vector_kernels.hpp"
 
@@ -10,6 +12,10 @@ EnergyMonitor::EnergyMonitor(const Assembler& assembler, const EvaluatedState& s
     : assembler_(assembler),
       mass_(assembler.system().pattern(), assembler.system().mass_values()),
       damped_((assembler.system().damping_values().array() != 0.0).any()) {
+  const System& system = assembler.system();
+  const Vector sizes = system.stiffness_values().cwiseAbs();
+  const double largest = MatrixProduct(system.pattern(), sizes).energy(start.state.z.cwiseAbs());
+  balance_.rounding = std::max(kNoEnergy, std::numeric_limits<double>::epsilon() * largest);
   balance_.kinetic = 0.5 * mass_.energy(start.state.v);
   balance_.stored = stored(start);
   balance_.start = balance_.kinetic + balance_.stored;

@@ -137,7 +137,7 @@ void judge_energy(RunSummary& summary, double tolerance) {
   const EnergyBalance& b = summary.energy;
   if (!summary.ok()) return;
   const double error = b.relative_error();
-  if (std::abs(error) <= tolerance || std::abs(b.worst_imbalance) <= kNoEnergy) return;
+  if (std::abs(error) <= tolerance || std::abs(b.worst_imbalance) <= b.rounding) return;
   if (!std::isfinite(error)) {
     summary.status = RunStatus::not_finite;
     summary.reason = kTooLarge;

@@ -410,3 +410,37 @@ TEST_CASE("A cubic cam whose path goes to and fro beside a knot while a called t
     for (int i = 0; i < 3; ++i) CHECK(std::abs(state.z[i] - expected[i]) < std::max(10.0 * tolerance, 1e-11));
   }
 }
+
+TEST_CASE("Pressure that follows the speed: of nodes beside the nominal motion the actual one, humps are met",
+          "[exact]") {
+  EngineCylinders::Params p{.bore = 0.05, .stroke = 0.05, .rod = 0.05, .firing_angles = {0.0}};
+  const auto run = [&](double angle, double speed, double t) {
+    Model m("engine");
+    for (const char* node : {"a", "b"}) {
+      m.add_node(node);
+      m.add<Inertia>(std::string("J_") + node, {node}, {.inertia = 1.0});
+    }
+    m.set_reference("b", constant_speed(10.0));  // of another train
+    m.set_initial("a", angle, speed);
+    m.add<EngineCylinders>("engine", {"a"}, p);
+    const System system = m.build();
+    State state = State::initial(system);
+    const RunSummary summary = propagate(system, {.t_end = t}, state);
+    INFO(summary.brief_report());
+    CHECK(summary.ok());
+    CHECK(summary.steps < 100);
+    return state.v[0];
+  };
+  p.gas = {.angle = {0.0, 1.0, 3.0, 6.0, 11.0},
+           .pressure = {1e6, 2e5, 5e5, 1e5, 5e5},
+           .peak_speed = {0.0, 10.0},
+           .peak_pressure = {1e6, 2e6}};
+  // SciPy's DOP853, relative tolerance 1e-13.
+  CHECK(run(0.0, 5.0, 0.5) == Approx(9.899462497898723).epsilon(1e-9));
+  // No torque at the start, and for most of the run: sqrt(100 + 2 W/J) by the integral of the pressure over the volume.
+  p.gas = {.angle = {0.0, 4.5, 5.0, 5.5},
+           .pressure = {0.0, 0.0, 5e5, 0.0},
+           .peak_speed = {0.0, 10.0},
+           .peak_pressure = {5e5, 5e5}};
+  CHECK(run(0.1, 10.0, 1.0) == Approx(8.57352918493832).epsilon(1e-9));
+}
