@@ -152,6 +152,7 @@ void FrictionSeries::locate(const Assembler& assembler, EvaluatedState& point) {
 
 void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
                              const std::vector<char>& at_rest, double slack) {
+  resolved_ = true;
   const auto n = contacts_.size();
   Vector others = point.total;
   for (std::size_t i = 0; i < n; ++i)

@@ -24,6 +24,7 @@
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -203,7 +204,10 @@ class FrictionSeries final : public TermForces {
   std::vector<double> largest_;  // coefficient of each degree among the torques: they are solved for together
   int known_degree_ = 0;         // degree of the engagements over the step
   bool gears_ = false, any_on_line_ = false, located_ = false;
-  double patience_ = 1.0;     // doubles with every change at one instant: what counts as rounding there
+  bool resolved_ = false;  // at this instant, from the forces evaluated there
+  double patience_ = 1.0;  // doubles with every change at one instant: what counts as rounding there
+  /// Factor on rounding of torques at an instant of many changes: more would pass over what does happen.
+  double bounded_patience() const { return std::min(patience_, 16.0); }
   double speed_scale_ = 0.0;  // largest speed so far: what rounding of slip speeds is relative to
 };
 
