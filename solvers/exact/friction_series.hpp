@@ -101,6 +101,8 @@ class FrictionSeries final : public TermForces {
 
   /// Some contact is stuck, or a tie: its torque follows from the forces.
   bool holds() const { return !stuck_.empty(); }
+  /// The largest torque of a contact.
+  double carried() const;
   FrictionState state(int contact) const;
   /// Enters what sticks or slides since the last call into the summary; at the start of the run nothing, and nothing of
   /// ties, which have no state.

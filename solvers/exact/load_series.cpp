@@ -227,7 +227,8 @@ double LoadSeries::unseen_between(const TaylorSeries& series, ProjectedLaws& law
   return unseen;
 }
 
-LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held) {
+LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held,
+                                     double carried) {
   if (first) {
     for (int k = 0; k < 3; ++k) std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
     last_.clear();
@@ -261,7 +262,9 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   };
   if (held) {
     const auto note = [&](int row, double, bool) {
-      largest_force_[idx(row)] = std::max(largest_force_[idx(row)], size_of_force(row));
+      // A train at rest turns by the rounding of what friction carries, and a force that follows this is rounding, too.
+      largest_force_[idx(row)] =
+          std::max({largest_force_[idx(row)], size_of_force(row), kForceRounding * carried});
     };
     smooth_.for_rows(note);
     laws.for_rows(note);

@@ -262,6 +262,34 @@ TEST_CASE("Lossy gear: how a torque goes on that is zero at the start tells whic
   }
 }
 
+TEST_CASE(
+    "Lossy gear: beside a brake at rest it stays at rest, and no load that follows the motion costs steps") {
+  // Bearing torque and brake hold the same shaft: how they share a load below both is not determined.
+  for (const double torque : {0.0, 1.0})
+    for (const bool engages : {false, true})
+      for (const bool called : {false, true}) {
+        CAPTURE(torque, engages, called);
+        Model m = gear_train(0.01, 10.0,
+                             {.ratio = 0.5,
+                              .efficiency_forward = 0.5,
+                              .efficiency_backward = 1.0,
+                              .bearing_torque_forward = 1.0});
+        DryFriction::Params brake{.torque = 5.0};
+        if (engages) brake.engagement = TimeTable({0.0, 0.2}, {torque == 0.0 ? 0.0 : 0.5, 1.0});
+        m.add<Brake>("brake", {"a"}, brake);
+        if (called)
+          m.add<TorqueFunction>("drag", {"b"}, {.torque = [torque](const TorqueVariables& x) {
+                                  return torque - 0.1 * x.speed * abs(x.speed);
+                                }});
+        else
+          load(m, "b", torque);
+        const FrictionRun r = ran(m.build(), 0.2);
+        CHECK(r.summary.steps <= 200);
+        CHECK(r.summary.friction_changes == 0);
+        CHECK(r.state.v.lpNorm<Eigen::Infinity>() < 1e-13);
+      }
+}
+
 TEST_CASE("Lossy gear: between events it costs what an ideal gear does") {
   const auto train = [](bool lossy, double brake) {
     Model m("cost");
