@@ -262,9 +262,7 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   };
   if (held) {
     const auto note = [&](int row, double, bool) {
-      // A train at rest turns by the rounding of what friction carries, and a force that follows this is rounding, too.
-      largest_force_[idx(row)] =
-          std::max({largest_force_[idx(row)], size_of_force(row), kForceRounding * carried});
+      largest_force_[idx(row)] = std::max(largest_force_[idx(row)], size_of_force(row));
     };
     smooth_.for_rows(note);
     laws.for_rows(note);
@@ -274,7 +272,9 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   const auto note_rest = [&](int row, double off_at_ends, bool) {
     const Rest rest = rest_of_force(row, off_at_ends);
     const double largest = largest_force_[idx(row)], lacks = std::max(rest.smooth, rest.rough);
-    if (held && lacks > kForceRounding * largest) pass.torque = std::max(pass.torque, lacks / largest);
+    // A train at rest turns by the rounding of what friction carries, and what follows this is rounding, too.
+    if (held && lacks > kForceRounding * std::max(largest, carried))
+      pass.torque = std::max(pass.torque, lacks / largest);
     const double smooth = measured(series, row, rest.smooth, held);
     pass.inside = std::max(pass.inside, kPathRest * smooth);
     pass.residual = std::max(pass.residual, at_end * smooth);
