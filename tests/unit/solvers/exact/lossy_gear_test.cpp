@@ -262,8 +262,7 @@ TEST_CASE("Lossy gear: how a torque goes on that is zero at the start tells whic
   }
 }
 
-TEST_CASE(
-    "Lossy gear: beside a brake at rest it stays at rest, and no load that follows the motion costs steps") {
+TEST_CASE("Lossy gear: held at rest together with a brake, whatever follows the motion") {
   // Bearing torque and brake hold the same shaft: how they share a load below both is not determined.
   for (const double torque : {0.0, 1.0})
     for (const bool engages : {false, true})
