@@ -16,11 +16,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNothing = 1e-13;  // rounding of a coefficient, relative to the terms that it is summed from
 constexpr double kOnBound = 1e-11;  // a torque stands on its bound, relative to what the contact can hold
 constexpr double kSameSlope = 1e-9;  // rounding of a derivative, relative to the derivative
-// Factor on rounding at an instant of many changes: more would pass over what does happen.
-constexpr double kMostPatience = 16.0;
-constexpr double kSlack = 4.0;  // factor on the difference of two forces that differ by rounding alone
+constexpr double kSlack = 4.0;       // factor on the difference of two forces that differ by rounding alone
 // Rounding of a bound's higher coefficients, relative to the largest terms of lower ones.
 constexpr double kLeast = 4e-15;
+// Part of the step within which the others outgrow a coefficient that is rounding.
+constexpr double kOutgrown = 1e-12;
 
 /// int_0^s a(s) b(s) ds.
 double integral_of_product(const std::vector<double>& a, const double* b, std::size_t terms_b, double s) {
@@ -122,7 +122,7 @@ void FrictionSeries::find_bounds(std::size_t i) {
       for (std::size_t d = 0; d < std::min(size.size(), largest_.size()); ++d)
         size[d] = std::max(size[d], largest_[d]);
       c.bounds.push_back({what, std::move(g)});
-      clean(c.bounds.back(), size, zero, 0.0, on_it, std::min(patience_, kMostPatience));
+      clean(c.bounds.back(), size, zero, 0.0, on_it, bounded_patience());
     }
     return;
   }
@@ -158,10 +158,12 @@ void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double
     return;
   }
   g[0] = 0.0;
-  double lower = size[0];  // a coefficient's rounding follows from those before it, too
+  double lower = size[0], most = 0.0;  // a coefficient's rounding follows from those before it, too
+  for (std::size_t d = 1; d < g.size(); ++d) most = std::max(most, std::abs(g[d]));
   for (std::size_t d = 1; d < g.size(); ++d) {
     lower = std::max(lower, size[d]);
-    const double rounding = patience * std::max(kNothing * size[d], kLeast * lower) + (d == 1 ? first : 0.0);
+    const double rounding =
+        patience * std::max({kNothing * size[d], kLeast * lower, kOutgrown * most}) + (d == 1 ? first : 0.0);
     if (std::abs(g[d]) > rounding) {
       if (g[d] < 0.0) bound.falls = static_cast<int>(d);
       return;
@@ -358,6 +360,7 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
 
 void FrictionSeries::forget_roots() {
   for (Contact& c : contacts_) c.root = c.loose = c.line_root = false;
+  resolved_ = false;
   patience_ = 1.0;
 }
 

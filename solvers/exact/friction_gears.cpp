@@ -258,13 +258,14 @@ void FrictionSeries::find_gear_bounds(std::size_t i) {
   const GearLoss& loss = *law(i).gear_loss();
   std::vector<double> size;
   const Contact& tie = contacts_[idx(c.tie)];
-  double rounding = c.torque_rounding + tie.torque_rounding;
-  if (c.root || c.line_root) rounding += c.torque_slack + tie.torque_slack;
+  const bool at_root = c.root || c.line_root || resolved_;
+  const double slack = at_root ? c.torque_slack + tie.torque_slack : 0.0,
+               rounding = c.torque_rounding + tie.torque_rounding + slack;
   if (!c.stuck) {
     const int other = 1 - c.line;
     c.bounds.push_back(
         {.what = What::drive_turns, .g = loss_gap(c, loss, other, c.sign, size), .line = other});
-    clean(c.bounds.back(), size, kOnGearBound * size[0] + rounding, 0.0, c.line_root);
+    clean(c.bounds.back(), size, kOnGearBound * size[0] + rounding, slack, c.line_root, bounded_patience());
     return;
   }
   for (const What what : {What::bound_high, What::bound_low}) {
@@ -279,7 +280,8 @@ void FrictionSeries::find_gear_bounds(std::size_t i) {
     const double nearest = std::max(both[0].g[0], both[1].g[0]);
     for (const int line : {0, 1}) {
       const bool on_it = root && both[line].g[0] >= nearest - kSameBound * sizes[line][0];
-      clean(both[line], sizes[line], kOnGearBound * sizes[line][0] + rounding, 0.0, on_it);
+      clean(both[line], sizes[line], kOnGearBound * sizes[line][0] + rounding, slack, on_it,
+            bounded_patience());
       c.bounds.push_back(std::move(both[line]));
     }
   }

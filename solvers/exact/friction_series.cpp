@@ -115,6 +115,14 @@ struct SlidingLine {
   double at_zero = 0.0, slope = 0.0;
 };
 
+/// What the bearing torques of a gear make of its loss.
+double largest_constant(const GearLossRow& gear) {
+  double largest = 0.0;
+  for (const std::vector<GearLossRow::Line>* lines : {&gear.high, &gear.low})
+    for (const GearLossRow::Line& line : *lines) largest = std::max(largest, std::abs(line.constant));
+  return largest;
+}
+
 SlidingLine sliding_line(const Friction& law, int segment) {
   if (law.one_way()) return {};
   const std::vector<double>&v = law.slip_speeds(), &torque = law.sliding_torques();
@@ -152,6 +160,7 @@ void FrictionSeries::locate(const Assembler& assembler, EvaluatedState& point) {
 
 void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
                              const std::vector<char>& at_rest, double slack) {
+  resolved_ = true;
   const auto n = contacts_.size();
   Vector others = point.total;
   for (std::size_t i = 0; i < n; ++i)
@@ -231,6 +240,8 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
         if (!std::isfinite(other)) continue;
         problem.rounding[k] += kNoAcceleration * std::abs(problem.w(k, j) * other);
       }
+      for (const GearLossRow& g : gears)
+        problem.rounding[k] += kNoAcceleration * std::abs(problem.w(k, g.loss)) * largest_constant(g);
     }
     if (m > 0) found = solve(problem, gears);
     if (m > 0 && gears_)  // through ties, torques accelerate contacts far from them
@@ -411,6 +422,12 @@ double FrictionSeries::add(const TaylorSeries& series, int k, double factor, dou
   return kWholeTerm;
 }
 
+double FrictionSeries::carried() const {
+  double largest = 0.0;
+  for (const Contact& c : contacts_) largest = std::max(largest, std::abs(c.torque[0]));
+  return largest;
+}
+
 void FrictionSeries::hold(const Assembler& assembler, Vector& v) const {
   if (stuck_.empty()) return;
   const auto m = static_cast<Eigen::Index>(stuck_.size());
@@ -424,11 +441,17 @@ void FrictionSeries::hold(const Assembler& assembler, Vector& v) const {
 }
 
 double FrictionSeries::energy_of_rounding(double duration) const {
+  // The whole force, accelerating by its rounding; torques that hold each other at rest are forces, too.
+  const auto holds = [](const Contact& c) { return (c.stuck || c.tied) && !c.rigid; };
   double sum = 0.0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const double speed = contacts_[i].speed_rounding * duration;
-    // The whole force, accelerating by its rounding.
-    sum += speed * speed / (kSumRounding * w_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
+    const auto row = static_cast<Eigen::Index>(i);
+    double rounding = contacts_[i].speed_rounding;
+    for (std::size_t j = 0; j < contacts_.size() && holds(contacts_[i]); ++j)
+      if (holds(contacts_[j]))
+        rounding += kSumRounding * std::abs(w_(row, static_cast<Eigen::Index>(j)) * contacts_[j].torque[0]);
+    const double speed = rounding * duration;
+    sum += speed * speed / (kSumRounding * w_(row, row));
   }
   return sum;
 }

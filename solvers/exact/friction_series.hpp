@@ -24,6 +24,7 @@
 #include <drev/solvers/run/evaluated_state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -100,6 +101,8 @@ class FrictionSeries final : public TermForces {
 
   /// Some contact is stuck, or a tie: its torque follows from the forces.
   bool holds() const { return !stuck_.empty(); }
+  /// The largest torque of a contact.
+  double carried() const;
   FrictionState state(int contact) const;
   /// Enters what sticks or slides since the last call into the summary; at the start of the run nothing, and nothing of
   /// ties, which have no state.
@@ -203,7 +206,10 @@ class FrictionSeries final : public TermForces {
   std::vector<double> largest_;  // coefficient of each degree among the torques: they are solved for together
   int known_degree_ = 0;         // degree of the engagements over the step
   bool gears_ = false, any_on_line_ = false, located_ = false;
-  double patience_ = 1.0;     // doubles with every change at one instant: what counts as rounding there
+  bool resolved_ = false;  // at this instant, from the forces evaluated there
+  double patience_ = 1.0;  // doubles with every change at one instant: what counts as rounding there
+  /// Factor on rounding of torques at an instant of many changes: more would pass over what does happen.
+  double bounded_patience() const { return std::min(patience_, 16.0); }
   double speed_scale_ = 0.0;  // largest speed so far: what rounding of slip speeds is relative to
 };
 

@@ -228,7 +228,8 @@ double LoadSeries::unseen_between(const TaylorSeries& series, ProjectedLaws& law
   return unseen;
 }
 
-LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held) {
+LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held,
+                                     double carried) {
   if (first) {
     for (int k = 0; k < 3; ++k) std::copy_n(series.right_side(k), stride_, base_.data() + k * stride_);
     last_.clear();
@@ -272,7 +273,9 @@ LoadSeries::Pass LoadSeries::project(TaylorSeries& series, ProjectedLaws& laws, 
   const auto note_rest = [&](int row, double off_at_ends, bool) {
     const Rest rest = rest_of_force(row, off_at_ends);
     const double largest = largest_force_[idx(row)], lacks = std::max(rest.smooth, rest.rough);
-    if (held && lacks > kForceRounding * largest) pass.torque = std::max(pass.torque, lacks / largest);
+    // A train at rest turns by the rounding of what friction carries, and what follows this is rounding, too.
+    if (held && lacks > kForceRounding * std::max(largest, carried))
+      pass.torque = std::max(pass.torque, lacks / largest);
     const double smooth = measured(series, row, rest.smooth, held);
     pass.inside = std::max(pass.inside, kPathRest * smooth);
     pass.residual = std::max(pass.residual, at_end * smooth);

@@ -69,8 +69,8 @@ class LoadSeries {
     bool follows = false;  ///< some load that is called follows the motion
   };
   /// Projects the forces, those of smooth laws too, along the series' path and puts them on its right side.
-  /// first: the step is new. held: some friction contact is stuck.
-  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held);
+  /// first: the step is new. held: some friction contact is stuck; carried: the largest torque of one.
+  Pass project(TaylorSeries& series, ProjectedLaws& laws, bool first, bool held, double carried);
   /// Where the path has settled: Pass::unseen of what loads and laws do between the nodes. most: what may be left unseen.
   double unseen_between(const TaylorSeries& series, ProjectedLaws& laws, bool held, double most);
   /// After a pass over a step that leaves too much: where that is rounding of forces, since a longer step from the same start

@@ -221,7 +221,8 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     if (got < h || !projects) return as_got();
     if (last && sure) return done();
     if (pass == kMaxPasses) return {0.5 * h};
-    const LoadSeries::Pass made = known.project(series, smooth, pass == 0, friction.holds());
+    const LoadSeries::Pass made =
+        known.project(series, smooth, pass == 0, friction.holds(), friction.carried());
     const double unseen = made.unseen / of_jump;
     excess = std::max({made.residual / of_jump, unseen, made.inside / (kInside * limits.tolerance),
                        made.torque / kTorqueRest});

@@ -225,6 +225,70 @@ TEST_CASE("Lossy gear: modes see an ideal gear, other methods say why they do no
   CHECK_THROWS_WITH(propagate(system, {.t_end = 1.0}, state), Catch::Contains("do not fit its ratio"));
 }
 
+TEST_CASE("Lossy gear: one that spins freely is driven from the touch behind a play on") {
+  // The gear adds J_c/efficiency to J_b: x = q_a - q_b - gap/2 is a vibration of 1 and 3 kg m^2 about 10 N m.
+  Model m = gear_train(1.0, 1.0, {.ratio = 1.0, .efficiency_forward = 0.5, .efficiency_backward = 0.5});
+  m.add_node("motor");
+  m.add<Inertia>("J", {"motor"}, {.inertia = 1.0});
+  m.add<DeadBandCoupling>("play", {"motor", "a"}, {.stiffness = 100.0, .gap = 0.1});
+  load(m, "motor", 10.0);
+  for (const char* n : {"motor", "a", "b"}) m.set_initial(n, 0.0, 1.0);
+  const System system = m.build();
+  const FrictionRun r = ran(system, 0.2);  // the touch is at 0.1 s, at 2 and 1 rad/s
+  const double w = std::sqrt(100.0 * 4.0 / 3.0),
+               x = 0.075 * (1.0 - std::cos(0.1 * w)) + std::sin(0.1 * w) / w,
+               x_dot = 0.075 * w * std::sin(0.1 * w) + std::cos(0.1 * w);
+  const auto node = [&](const char* name, const char* what) {
+    return channel_at(system, r.state, std::string(name) + what);
+  };
+  // v_motor + 3 v_a = 5 + 10 t and q_motor + 3 q_a = 0.45 + 5 t + 5 t^2 behind the touch.
+  const double v_a = (6.0 - x_dot) / 4.0, q_a = (0.95 - x) / 4.0;
+  CHECK(node("a", ".speed_rad_per_s") == Approx(v_a).epsilon(1e-12));
+  CHECK(node("motor", ".speed_rad_per_s") == Approx(v_a + x_dot).epsilon(1e-12));
+  CHECK(node("a", ".angle_rad") == Approx(q_a).epsilon(1e-12));
+}
+
+TEST_CASE("Lossy gear: how a torque goes on that is zero at the start tells which shaft drives") {
+  // The torque brakes shaft 1, so that shaft 2 drives: (J_a + efficiency J_b) q'' = f(q), from scipy's DOP853.
+  for (const bool touches : {false, true}) {
+    Model m = gear_train(0.01, 10.0, {.ratio = 1.0, .efficiency_forward = 0.5, .efficiency_backward = 0.9});
+    for (const char* n : {"a", "b"}) m.set_initial(n, 0.0, 10.0);
+    m.add<TorqueFunction>("f", {"a"}, {.torque = [touches](const TorqueVariables& x) {
+                            return touches ? cos(x.angle) - 1.0 : -sin(x.angle);
+                          }});
+    const FrictionRun r = ran(m.build(), 0.2);
+    CHECK(r.state.z[0] == Approx(touches ? 1.99935209007772 : 1.99878952270416).epsilon(1e-11));
+    CHECK(r.state.v[0] == Approx(touches ? 9.987897390788 : 9.98428236646743).epsilon(1e-11));
+  }
+}
+
+TEST_CASE("Lossy gear: held at rest together with a brake, whatever follows the motion") {
+  // Bearing torque and brake hold the same shaft: how they share a load below both is not determined.
+  for (const double torque : {0.0, 1.0})
+    for (const bool engages : {false, true})
+      for (const bool called : {false, true}) {
+        CAPTURE(torque, engages, called);
+        Model m = gear_train(0.01, 10.0,
+                             {.ratio = 0.5,
+                              .efficiency_forward = 0.5,
+                              .efficiency_backward = 1.0,
+                              .bearing_torque_forward = 1.0});
+        DryFriction::Params brake{.torque = 5.0};
+        if (engages) brake.engagement = TimeTable({0.0, 0.2}, {torque == 0.0 ? 0.0 : 0.5, 1.0});
+        m.add<Brake>("brake", {"a"}, brake);
+        if (called)
+          m.add<TorqueFunction>("drag", {"b"}, {.torque = [torque](const TorqueVariables& x) {
+                                  return torque - 0.1 * x.speed * abs(x.speed);
+                                }});
+        else
+          load(m, "b", torque);
+        const FrictionRun r = ran(m.build(), 0.2);
+        CHECK(r.summary.steps <= 200);
+        CHECK(r.summary.friction_changes == 0);
+        CHECK(r.state.v.lpNorm<Eigen::Infinity>() < 1e-13);
+      }
+}
+
 TEST_CASE("Lossy gear: between events it costs what an ideal gear does") {
   const auto train = [](bool lossy, double brake) {
     Model m("cost");
