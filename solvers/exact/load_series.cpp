@@ -13,7 +13,7 @@ namespace {
 
 // Least term that tells which way an angle leaves a knot, relative to the largest: it comes over the knot by its square at most, and
 // what is projected is off by more than rounding at the step's start.
-constexpr double kLeastLead = 1e-8;
+constexpr double kLeastLead = 1e-5;
 // Error of the path inside a step, relative to the rest that the projection leaves: 1/(4 D^2).
 constexpr double kPathRest = 4e-3;
 // Error of the step's end, relative to the same: (2 D + 3) j_{D+1}(3/2), see legendre_projection.hpp.

@@ -24,16 +24,17 @@ Model discs(std::initializer_list<std::pair<const char*, double>> inertias) {
 void check_end(const Model& model, double t, std::initializer_list<double> z,
                std::initializer_list<double> v) {
   const System s = model.build();
-  for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12}) {
+  for (const double tolerance : {1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
     State state = State::initial(s);
     const RunSummary run = propagate(s, {.tolerance = tolerance, .t_end = t}, state);
     INFO(tolerance << ": " << run.brief_report());
     CHECK(run.ok());
-    const double most = std::max(2.0 * tolerance, 1e-12);
+    // Of the largest angle and speed.
+    const double most = std::max(2.0 * tolerance, 1e-11), fastest = state.v.cwiseAbs().maxCoeff();
     int i = 0;
     for (const double expected : z) CHECK(std::abs(state.z[i++] - expected) <= most);
     i = 0;
-    for (const double expected : v) CHECK(std::abs(state.v[i++] - expected) <= most * std::abs(expected));
+    for (const double expected : v) CHECK(std::abs(state.v[i++] - expected) <= most * fastest);
   }
 }
 
@@ -68,22 +69,20 @@ TEST_CASE("A cubic cam at rest on a knot beside a torque that is called") {
 }
 
 TEST_CASE("A train that stands still at an angle has no energy but rounding") {
-  Model m = discs({{"a", 0.1}, {"b", 1.0}, {"c", 1.0}});
-  for (const char* node : {"a", "b", "c"}) m.set_initial(node, 0.5 * kPi, 0.0);
-  m.add<ShaftSpring>("soft", {"a", "b"}, {.stiffness = 1.0, .damping = 0.1});
-  m.add<ShaftSpring>("stiff", {"b", "c"}, {.stiffness = 1e4, .damping = 0.1});
-  m.add<Propeller>("p", {"b"}, {.rated_torque = 100.0, .rated_speed = 10.0});
-  const System s = m.build();
-  State state = State::initial(s);
-  const RunSummary run = propagate(s, {.t_end = 0.5}, state);
-  INFO(run.brief_report());
-  CHECK(run.ok());
-  CHECK(run.energy.relative_error() == 0.0);
-  // A millionth of a radian of twist is energy.
-  m.set_initial("c", 0.5 * kPi + 1e-6, 0.0);
-  const System twisted = m.build();
-  state = State::initial(twisted);
-  const RunSummary other = propagate(twisted, {.t_end = 0.5}, state);
-  CHECK(other.energy.scale == Approx(0.5e4 * 1e-12).epsilon(1e-2));
-  CHECK(other.energy.scale > other.energy.rounding);
+  const auto run = [](double twist) {
+    Model m = discs({{"a", 0.1}, {"b", 1.0}, {"c", 1.0}});
+    for (const char* node : {"a", "b"}) m.set_initial(node, 0.5 * kPi, 0.0);
+    m.set_initial("c", 0.5 * kPi + twist, 0.0);
+    m.add<ShaftSpring>("soft", {"a", "b"}, {.stiffness = 1.0, .damping = 0.1});
+    m.add<ShaftSpring>("stiff", {"b", "c"}, {.stiffness = 1e4, .damping = 0.1});
+    m.add<Propeller>("p", {"b"}, {.rated_torque = 100.0, .rated_speed = 10.0});
+    return propagate(m.build(), {.t_end = 0.5});
+  };
+  const RunSummary still = run(0.0), twisted = run(1e-6);
+  INFO(still.brief_report());
+  CHECK(still.ok());
+  CHECK(still.energy.relative_error() == 0.0);
+  // A millionth of a radian is energy.
+  CHECK(twisted.energy.scale == Approx(0.5 * 1e4 * 1e-12).epsilon(1e-2));
+  CHECK(twisted.energy.scale > twisted.energy.rounding);
 }
