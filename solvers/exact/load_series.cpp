@@ -11,6 +11,8 @@ namespace drev {
 
 namespace {
 
+// Rounding of the distance to a knot, relative to the largest term of an angle's series.
+constexpr double kAtKnot = 1e-13;
 // Least term that tells which way an angle leaves a knot, relative to the largest: it comes over the knot by its square at most, and
 // what is projected is off by more than rounding at the step's start.
 constexpr double kLeastLead = 1e-5;
@@ -343,7 +345,8 @@ std::optional<double> LoadSeries::first_knot(const TaylorSeries& series, double 
       double largest = 0.0;
       for (const double term : g) largest = std::max(largest, std::abs(term));
       std::size_t lead = 0;
-      while (lead <= degree && std::abs(g[lead]) <= kLeastLead * largest) g[lead++] = 0.0;
+      while (lead <= degree && std::abs(g[lead]) <= (lead == 0 ? kAtKnot : kLeastLead) * largest)
+        g[lead++] = 0.0;
       if (lead > degree) continue;
       const std::optional<double> s = g[lead] < 0.0 ? std::optional(0.0) : first_crossing(g, end);
       if (!s) continue;
