@@ -39,7 +39,8 @@ std::string reference_name(const Model& model) {
 Json campbell_object(const Model& model, const System& system, const ModeSet& modes, double duration) {
   const SpeedRange range = speed_range(system, duration);
   if (!(range.fastest > 0.0)) return nullptr;
-  std::vector<Crossing> all = find_crossings(system, modes, range.first);
+  Excitation excitation = find_excitation(system, modes, range);
+  std::vector<Crossing>& all = excitation.crossings;
   const std::vector<double> shown = chief_orders(all, range);
   std::erase_if(all, [&](const Crossing& c) { return c.speed > kFarthest * range.fastest; });
 
@@ -65,6 +66,7 @@ Json campbell_object(const Model& model, const System& system, const ModeSet& mo
           {"speed", {range.slowest, range.fastest}},
           {"orders", std::move(list)},
           {"crossings", std::move(crossings)},
+          {"unknown", excitation.unknown},
           {"shafts", shafts_object(system, name)}};
 }
 

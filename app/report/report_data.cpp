@@ -150,8 +150,8 @@ Json report_data(const RunRequest& request, const RunResult& result, const Repor
   // A run-up has orders over speed instead (result.run_up).
   data["spectra"] = result.run_up
                         ? Json()
-                        : spectra_object(history, result.span.from, cycle_of(m), m.system.reference_speed(),
-                                         highest > 0.0 ? highest : HUGE_VAL);
+                        : spectra_object(history, result.span.from, spectrum_cycle(m),
+                                         m.system.reference_speed(), highest > 0.0 ? highest : HUGE_VAL);
   return data;
 }
 

@@ -105,7 +105,9 @@ std::string run_up_rows(const SpeedsPassed& up) {
     if (criticals.size() < kCriticalsShown)
       criticals.push_back(speed_text(c.speed) + " (order " + short_digits(c.order, 4) + ", " +
                           digits(up.frequency_Hz[static_cast<std::size_t>(c.mode)], 4) + " Hz)");
-  text += labelled("Criticals passed", (criticals.empty() ? "none" : join(criticals)) +
+  text += labelled("Criticals passed", (!criticals.empty()   ? join(criticals)
+                                        : up.unknown.empty() ? "none"
+                                                             : "none known") +
                                            "; the most excited first, contacts closed");
   const std::string turns = short_digits(up.turns, 4) + " turns";
   if (!up.orders.channels.empty())
@@ -324,6 +326,10 @@ std::vector<std::string> notes_of(const RunResult& r) {
         (nominal ? "; orders over the run-up are per turn at the nominal speed, which the loads follow"
                  : "; orders are per turn at the actual speed"));
   }
+  if (r.run_up && !r.run_up->unknown.empty())
+    notes.push_back("the orders of " + join(r.run_up->unknown) +
+                    " are not known, and their resonances not among the criticals: a torque of each does not "
+                    "repeat within two turns of its node");
   return notes;
 }
 

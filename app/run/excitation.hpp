@@ -3,12 +3,13 @@
 /// the list of criticals and the tracking of orders are made from. Natural frequencies do not depend on
 /// speed in drev.
 ///
-/// The orders of a load are those of its torque over two turns of its node. How much order o excites mode m
-/// is the static response of the mode to the phase sum over all loads,
+/// The orders of a load are those that it states (HarmonicLoad), or those of its torque over two turns of its node.
+/// How much order o excites mode m is the static response of the mode to the phase sum over all loads,
 ///
 ///   q_om = |sum_l x_l A_lo exp(i phase_lo)| / omega_m^2,   x_m' M x_m = 1,
 ///
-/// times the shape's largest entry [rad or m]. At resonance it is 1 / (2 zeta_m) times as large.
+/// times the shape's largest entry [rad or m], with the loads at the speed omega_m / o at which they meet. At resonance
+/// it is 1 / (2 zeta_m) times as large.
 #include <drev/core/model.hpp>
 #include <drev/core/system.hpp>
 #include <drev/solvers/modes/modes.hpp>
@@ -26,8 +27,8 @@ struct Crossing {
   double answer = 0.0;  ///< q_om times the shape's largest entry [rad or m]
 };
 
-/// Of all orders and modes, the most excited first. rate: speed that loads are evaluated at [rad/s].
-std::vector<Crossing> find_crossings(const System& system, const ModeSet& modes, double rate);
+/// At which loads are looked at where no speed is known [rad/s].
+inline constexpr double kTurning = 1.0;
 
 /// The node on which the torque acts whose range over two turns of its node is the largest, the first of equal ones; empty:
 /// none has orders.
@@ -46,6 +47,15 @@ struct SpeedRange {
   bool changes() const { return fastest > slowest * (1.0 + 1e-9); }
 };
 SpeedRange speed_range(const System& system, double duration);
+
+struct Excitation {
+  std::vector<Crossing> crossings;  ///< of all orders and modes, the most excited first
+  std::vector<std::string>
+      unknown;  ///< elements with a torque whose orders are not known: it does not repeat in two turns
+};
+/// range: of the run; the loads of a crossing slower than half the slowest speed, or faster than twice the fastest, are those at
+/// that speed.
+Excitation find_excitation(const System& system, const ModeSet& modes, const SpeedRange& range);
 
 /// The orders worth showing: of each of the lowest modes those that excite it most, resonant in the run's speeds or
 /// not far from them; then those that excite most wherever they are resonant, until there are a few. Ascending.

@@ -48,5 +48,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
 std::vector<Channel> mesh_channels(const System& system);
 /// Time of the turn that static torques are sought over, where the shaft's speed is constant; else 0.
 double cycle_of(const ModelRequest& model);
+/// Time of the cycles that spectra are over: that turn, or two turns where it is not stated.
+double spectrum_cycle(const ModelRequest& model);
 
 }  // namespace drev::app

@@ -11,7 +11,6 @@ namespace {
 constexpr double kTurnsOfWindow = 4.0;
 constexpr double kUsualOrders = 12.0;
 constexpr std::size_t kMostCriticals = 40;
-constexpr double kTurning = 1.0;  // rad/s, at which loads are looked at where no speed is known
 }  // namespace
 
 bool turns_actually(const System& system, double duration) {
@@ -46,7 +45,9 @@ RunUpWatch::RunUpWatch(const System& full, const ModeSet* modes, const System& s
   if (actual) range = {0.0, HUGE_VAL, kTurning, kTurning};  // not known yet
   std::vector<double> orders;
   if (modes != nullptr) {
-    crossings_ = find_crossings(turning, *modes, range.first);
+    Excitation excitation = find_excitation(turning, *modes, range);
+    crossings_ = std::move(excitation.crossings);
+    found_.unknown = std::move(excitation.unknown);
     if (const double ratio = actual ? std::abs(turning.ratio(turning.node(shaft.node))) : 1.0; ratio != 1.0)
       for (Crossing& c : crossings_) {
         c.order /= ratio;

@@ -33,6 +33,8 @@ struct SpeedsPassed {
   /// the most excited first.
   std::vector<Crossing> criticals;
   std::vector<double> frequency_Hz;  ///< of the modes
+  std::vector<std::string>
+      unknown;  ///< elements with a torque whose orders are not known (Excitation::unknown)
   OrderTracks orders;
   double turns = 0.0;  ///< of the reference shaft in a window of the tracking
   /// Amplitudes of evenly spaced orders, in the same windows: the waterfall. None where it was not wanted.

@@ -18,6 +18,7 @@ constexpr double kSameTime = 1e-6;        // difference of equal times over the 
 // Largest relative growth of the interval from one point to the next, and first interval relative to the time
 // since the start [-].
 constexpr double kGrowth = 0.1;
+constexpr std::size_t kMean = 1, kParabola = 3;  // terms of a fit over time
 }  // namespace
 
 OrderTracking::OrderTracking(const System& system, const std::vector<std::string>& channels,
@@ -29,12 +30,14 @@ OrderTracking::OrderTracking(const System& system, const std::vector<std::string
       own_times_(own_times),
       node_(shaft.empty() ? -1 : system.node(shaft)) {
   tracks_.shaft = shaft;
+  const bool free = node_ >= 0 || !system.floating_parts(Contact::closed).empty();
   tracks_.orders = std::move(orders);
   for (const Channel& channel : channels_) {
     tracks_.channels.push_back(channel.name());
     tracks_.units.push_back(channel.unit());
-    const bool grows = node_ >= 0 && (channel.unit() == "rad" || channel.unit() == "rad/s");
-    trend_of_.push_back(grows ? static_cast<int>(trends_++) : -1);
+    const bool grows = free && (channel.unit() == "rad" || channel.unit() == "rad/s");
+    terms_of_.push_back(grows ? kParabola : kMean);
+    most_terms_ = std::max(most_terms_, terms_of_.back());
   }
   for (const double order : tracks_.orders) highest_ = std::max(highest_, order);
   for (auto* values : {&tracks_.amplitude, &tracks_.phase})
@@ -99,8 +102,9 @@ void OrderTracking::open(double begin) {
   windows_.push_back({.begin = begin,
                       .sums = std::vector<Complex>(channels_.size() * turns_.size()),
                       .t_0 = time_,
-                      .trends = std::vector<std::array<double, 3>>(trends_),
-                      .waves = std::vector<std::array<Complex, 3>>(trends_ > 0 ? turns_.size() : 0)});
+                      .trends = std::vector<std::array<double, kParabola>>(channels_.size()),
+                      .waves = std::vector<std::array<Complex, kParabola>>(turns_.size()),
+                      .twice = std::vector<Complex>(turns_.size())});
 }
 
 void OrderTracking::start(const Assembler& assembler, const EvaluatedState& point) {
@@ -148,7 +152,6 @@ void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*fro
       return s > 0.0 && s < 1.0 ? std::pow(std::sin(0.5 * kTwoPi * s), 2) : 0.0;
     };
     const double w0 = weight(before), w1 = weight(turned_);
-    window.weights += 0.5 * (w0 + w1) * dphi;
     window.time += 0.5 * (w0 + w1) * dt;
     window.moment += 0.5 * (w0 * t_before + w1 * time_) * dt;
     std::size_t place = 0;
@@ -157,7 +160,7 @@ void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*fro
       for (std::size_t k = 0; k < turns_.size(); ++k)
         window.sums[place++] += f0 * last_turns_[k] + f1 * turns_[k];
     }
-    if (trends_ > 0) add_trends(window, w0, w1, t_before, dphi);
+    add_trends(window, w0, w1, t_before, dphi);
   }
   while (!windows_.empty() && turned_ >= windows_.front().begin + width_) {
     close(windows_.front());
@@ -167,53 +170,61 @@ void OrderTracking::step(const Assembler& assembler, const EvaluatedState& /*fro
 
 void OrderTracking::add_trends(Window& window, double w0, double w1, double t_before, double dphi) {
   double f0 = 0.5 * w0 * dphi, f1 = 0.5 * w1 * dphi;
+  for (std::size_t k = 0; k < turns_.size(); ++k)
+    window.twice[k] += f0 * last_turns_[k] * last_turns_[k] + f1 * turns_[k] * turns_[k];
   const double t_0 = t_before - window.t_0, t_1 = time_ - window.t_0;
-  for (std::size_t power = 0; power < window.moments.size(); ++power, f0 *= t_0, f1 *= t_1) {
+  for (std::size_t power = 0; power < 2 * most_terms_ - 1; ++power, f0 *= t_0, f1 *= t_1) {
     window.moments[power] += f0 + f1;
-    if (power > 2) continue;
+    if (power >= most_terms_) continue;
     for (std::size_t c = 0; c < channels_.size(); ++c)
-      if (trend_of_[c] >= 0)
-        window.trends[static_cast<std::size_t>(trend_of_[c])][power] +=
-            f0 * last_values_[c] + f1 * values_[c];
+      if (power < terms_of_[c]) window.trends[c][power] += f0 * last_values_[c] + f1 * values_[c];
     for (std::size_t k = 0; k < turns_.size(); ++k)
       window.waves[k][power] += f0 * last_turns_[k] + f1 * turns_[k];
   }
 }
 
-/// Least-squares fit of a parabola and one order: A exp(i p) from sum = int w y exp(-i o phi) dphi.
-OrderTracking::Complex OrderTracking::beside_trend(const Window& window, std::size_t trend, std::size_t order,
-                                                   Complex sum) const {
-  Eigen::MatrixXd m(3, 3);
-  Vector y(3);
-  Eigen::MatrixXd v(3, 2);  // moments of the cosine and of the sine
-  for (int i = 0; i < 3; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    for (int j = 0; j < 3; ++j) m(i, j) = window.moments[at + static_cast<std::size_t>(j)];
-    y[i] = window.trends[trend][at];
-    v(i, 0) = window.waves[order][at].real();
-    v(i, 1) = -window.waves[order][at].imag();
+/// Least-squares fit of one order beside so many powers of the time, in the channels that have so many: A exp(i p) of
+/// A cos(o phi + p).
+void OrderTracking::fit(const Window& window, std::size_t order, std::size_t terms) {
+  std::vector<std::size_t> fitted;
+  for (std::size_t c = 0; c < channels_.size(); ++c)
+    if (terms_of_[c] == terms) fitted.push_back(c);
+  if (fitted.empty()) return;
+  const auto cosine = static_cast<Eigen::Index>(terms), sine = cosine + 1;
+  Eigen::MatrixXd normal(sine + 1, sine + 1);  // its lower triangle
+  Eigen::MatrixXd right(sine + 1, static_cast<Eigen::Index>(fitted.size()));
+  for (std::size_t i = 0; i < terms; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t j = 0; j <= i; ++j) normal(row, static_cast<Eigen::Index>(j)) = window.moments[i + j];
+    normal(cosine, row) = window.waves[order][i].real();
+    normal(sine, row) = -window.waves[order][i].imag();
   }
-  const Eigen::MatrixXd parts = ldlt_solve(m, v);
-  const Eigen::MatrixXd normal =
-      0.5 * window.weights * Eigen::MatrixXd::Identity(2, 2) - v.transpose() * parts;
-  const Vector right = Eigen::Vector2d(sum.real(), -sum.imag()) - parts.transpose() * y;
-  const Vector wave = ldlt_solve(normal, right);
-  return {wave[0], -wave[1]};
+  normal(cosine, cosine) = 0.5 * (window.moments[0] + window.twice[order].real());
+  normal(sine, sine) = 0.5 * (window.moments[0] - window.twice[order].real());
+  normal(sine, cosine) = -0.5 * window.twice[order].imag();
+  for (Eigen::Index n = 0; n < right.cols(); ++n) {
+    const std::size_t c = fitted[static_cast<std::size_t>(n)];
+    for (std::size_t i = 0; i < terms; ++i) right(static_cast<Eigen::Index>(i), n) = window.trends[c][i];
+    const Complex sum = window.sums[c * turns_.size() + order];
+    right(cosine, n) = sum.real();
+    right(sine, n) = -sum.imag();
+  }
+  const Eigen::MatrixXd found = ldlt_solve(normal, right);
+  for (Eigen::Index n = 0; n < right.cols(); ++n) {
+    const Complex wave(found(cosine, n), -found(sine, n));
+    const std::size_t c = fitted[static_cast<std::size_t>(n)];
+    tracks_.amplitude[c][order].push_back(std::abs(wave));
+    tracks_.phase[c][order].push_back(std::arg(wave));
+  }
 }
 
 void OrderTracking::close(const Window& window) {
-  if (window.reverses || !(window.weights > 0.0) || !(window.time > 0.0)) return;
+  const double weights = window.moments[0];
+  if (window.reverses || !(weights > 0.0) || !(window.time > 0.0)) return;
   tracks_.time.push_back(window.moment / window.time);
-  tracks_.speed.push_back(window.weights / window.time);
-  std::size_t place = 0;
-  for (std::size_t c = 0; c < channels_.size(); ++c)
-    for (std::size_t k = 0; k < turns_.size(); ++k, ++place) {
-      const Complex wave = trend_of_[c] < 0 ? 2.0 * window.sums[place] / window.weights
-                                            : beside_trend(window, static_cast<std::size_t>(trend_of_[c]), k,
-                                                           window.sums[place]);
-      tracks_.amplitude[c][k].push_back(std::abs(wave));
-      tracks_.phase[c][k].push_back(std::arg(wave));
-    }
+  tracks_.speed.push_back(weights / window.time);
+  for (std::size_t k = 0; k < turns_.size(); ++k)
+    for (const std::size_t terms : {kMean, kParabola}) fit(window, k, terms);
   if (tracks_.time.size() > kMostWindows) thin();
 }
 

@@ -3,23 +3,24 @@
 /// phi is the nominal angle of the reference shaft or, where nothing turns nominally, the actual angle of a
 /// node.
 ///
-///   A_o exp(i p_o) = 2 int w(phi) y exp(-i o phi) dphi / int w dphi,   w = sin^2(pi (phi - phi_a) / W)
+///   int w (a_0 + A_o cos(o phi + p_o) - y)^2 dphi  least,   w = sin^2(pi (phi - phi_a) / W)
 ///
-/// In a window, y is about A_o cos(o phi + p_o). phi is counted in the sense in which the shaft turns at the
+/// which is A_o exp(i p_o) = 2 int w y exp(-i o phi) dphi / int w dphi where o W / (2 pi) is an integer of at least 2; an
+/// order below, as of a shaft geared down, would hold a part of the mean. phi is counted in the sense in which the shaft turns at the
 /// start; behind a reversal of a nominal angle in the other sense, and windows that hold the reversal are left out. An actual
 /// angle that starts at rest is counted in the sense in which it has first turned by kBegun
 /// turns, where the first window begins. Where its shaft turns back, an actual angle decreases: the integrals are
 /// those over the angle. Windows have the length W, and each begins half a window after the last one (Hann
-/// window in the angle). An order that the channel contains with a constant amplitude is found exactly;
-/// another order o' does not leak into it where (o - o') W / (2 pi) is an integer of at least 2. A freely
+/// window in the angle). An order that the channel contains with a constant amplitude is found exactly beside a
+/// constant mean; another order o' does not leak into it where (o - o') W / (2 pi) is an integer of at least 2. A freely
 /// oscillating resonance is not one of the orders and is left out as far as its frequency differs from
 /// theirs. Bandwidth (equivalent noise bandwidth of the window): 1.5 / turns orders; orders are resolved from
 /// a distance of 2 / turns on (kBandwidth, kResolution). If an amplitude changes inside a window, its mean
 /// over the window is found.
 ///
-/// Where the angle is an actual one, angles and speeds of nodes grow with it and would leak into every order.
-/// In these channels the order is fitted together with a parabola in time, a_0 + a_1 t + a_2 t^2 + A_o cos(o
-/// phi + p_o), by least squares with the window's weights: it is the vibration about the mean motion.
+/// Where a part floats freely or the angle is an actual one, angles and speeds of nodes grow and would leak into every
+/// order. In these channels the order is fitted beside a parabola in time, a_0 + a_1 t + a_2 t^2: it is the vibration about
+/// the mean motion.
 ///
 /// Source: K. R. Fyfe, E. D. S. Munck, Analysis of computed order tracking, Mechanical Systems and Signal
 /// Processing 11(2), 1997, doi:10.1006/mssp.1996.0056. Deviation from the source: the angle is known, so that
@@ -73,19 +74,20 @@ class OrderTracking final : public Observer {
  private:
   using Complex = std::complex<double>;
   struct Window {
-    double begin = 0.0;                              ///< angle turned at its begin [rad]
-    double weights = 0.0, time = 0.0, moment = 0.0;  ///< int w dphi, int w dt, int w t dt
-    std::vector<Complex> sums;                       ///< int w y exp(-i o phi) dphi of channels and orders
-    bool reverses = false;                           ///< the nominal speed changes its sign in it
-    // With t counted from t_0. moments: int w t^k dphi; trends: int w t^k y dphi of each channel that grows;
-    // waves: int w t^k exp(-i o phi) dphi of each order.
+    double begin = 0.0;               ///< angle turned at its begin [rad]
+    double time = 0.0, moment = 0.0;  ///< int w dt, int w t dt
+    std::vector<Complex> sums;        ///< int w y exp(-i o phi) dphi of channels and orders
+    bool reverses = false;            ///< the nominal speed changes its sign in it
+    // With t counted from t_0. moments: int w t^k dphi; trends: int w t^k y dphi of each channel;
+    // waves: int w t^k exp(-i o phi) dphi of each order; twice: int w exp(-2 i o phi) dphi.
     double t_0 = 0.0;
     std::array<double, 5> moments{};
     std::vector<std::array<double, 3>> trends;
     std::vector<std::array<Complex, 3>> waves;
+    std::vector<Complex> twice;
   };
   void add_trends(Window& window, double w0, double w1, double t_before, double dphi);
-  Complex beside_trend(const Window& window, std::size_t trend, std::size_t order, Complex sum) const;
+  void fit(const Window& window, std::size_t order, std::size_t terms);
   void open(double begin);
   void close(const Window& window);
   void thin();
@@ -96,8 +98,8 @@ class OrderTracking final : public Observer {
   bool reverses_to(double rate);
 
   std::vector<Channel> channels_;
-  std::vector<int> trend_of_;  // place of each channel in Window::trends; -1: the channel does not grow
-  std::size_t trends_ = 0;
+  std::vector<std::size_t> terms_of_;  // powers of the time fitted in each channel: the mean, or a parabola
+  std::size_t most_terms_ = 1;
   double width_, spacing_, highest_ = 0.0;
   bool own_times_;
   int node_ = -1;       // node whose actual angle is phi; -1: phi is the nominal angle

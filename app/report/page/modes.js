@@ -213,6 +213,15 @@ function showCampbell() {
         });
       },
     });
+    if (c.unknown.length)
+      section.append(
+        make(
+          "p",
+          {},
+          `The orders of ${c.unknown.join(", ")} are not known, and their resonances not shown: ` +
+            "a torque of each does not repeat within two turns of its node.",
+        ),
+      );
     const passed = c.speed[0] !== c.speed[1];
     const near = [...c.crossings]
       .filter((x) =>

@@ -399,3 +399,23 @@ TEST_CASE("Orders of the report are of the speed at which the shaft really turne
   const Json& peak = spectra.at("channels")[0].at("peaks")[0];
   CHECK(std::abs(peak.at("frequency_Hz").get<double>() / turns - 2.0) < 2e-3);
 }
+
+TEST_CASE("Spectra are over whole cycles at any constant nominal speed: an order shows its amplitude") {
+  // 617 rpm: half of the run is 10.28 turns. A held node, and on a stiff shaft 50 N m of order 1.
+  const TemporaryFolder folder;
+  const std::string path = (folder / "whole.toml").string();
+  std::ofstream(path)
+      << "format = 1\n[nodes]\nend = { hold = true, nominal_speed_rpm = 617 }\ndisc = {}\n[elements]\n"
+         "J = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 1e-3 }\n"
+         "shaft = { type = \"shaft_spring\", nodes = [\"end\", \"disc\"], stiffness_Nm_per_rad = 1e4, "
+         "damping_Nms_per_rad = 3 }\nload = { type = \"engine_order_torque\", node = \"disc\", harmonics = { "
+         "order = [1], amplitude_Nm = [50] }, twist_feedback = false }\n[run]\nduration_s = 2\n"
+         "record = [\"load.torque_Nm\"]\n";
+  const Json spectra = block_of_run({path}).at("spectra");
+  const double turns = (spectra.at("to").get<double>() - spectra.at("from").get<double>()) * 617.0 / 60.0;
+  CHECK(turns / 2.0 == Approx(std::round(turns / 2.0)).margin(1e-9));
+  CHECK(turns > 7.9);
+  const auto lines = decoded<float>(spectra.at("channels")[0].at("amplitude").get<std::string>());
+  REQUIRE_FALSE(lines.empty());
+  CHECK(*std::max_element(lines.begin(), lines.end()) == Approx(50.0).epsilon(1e-4));
+}

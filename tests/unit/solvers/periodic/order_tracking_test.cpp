@@ -109,7 +109,10 @@ TEST_CASE("Three orders with their phases over a run-up from 1000 rpm: amplitude
       if (std::abs(even[k] - tracks.orders[std::size_t(i)]) < distance)
         distance = std::abs(even[k] - tracks.orders[std::size_t(i)]), beside = amplitude[i];
     for (std::size_t w = 0; w < map.time.size(); ++w) {
-      const double expected = distance == 0.0 ? beside : distance == 0.25 ? 0.5 * beside : 0.0;
+      double expected = distance == 0.0 ? beside : distance == 0.25 ? 0.5 * beside : 0.0;
+      // The line of one period in the window, fitted beside the mean: from cos(phi/2 + 0.3) the normal equations with
+      // the means 1, 1/2, 1/2 of w, w cos^2, w sin^2 and -1/2 of w cos give cos 0.3 and half of sin 0.3.
+      if (even[k] == 0.25) expected = std::hypot(std::cos(0.3), 0.5 * std::sin(0.3));
       CHECK(map.amplitude[0][k][w] == Approx(expected).margin(1e-3));
     }
   }
@@ -324,4 +327,66 @@ TEST_CASE("A nominal speed that reverses: its windows are left out, and all othe
   }
   CHECK(before > 2);
   CHECK(behind > 2);
+}
+
+TEST_CASE("The mean torque is no part of an order below a half, as that of a shaft geared down") {
+  // A held node, a shaft, and behind a gear of 1/3 the load 3000 + 30 cos(psi) N m: in the shaft order 1/3 of 10 N m, raised
+  // by the inertia reduced to its end: k/(k - J w^2).
+  const double k = 1e6, reduced = 1.0 + 1.0 / 9.0;
+  for (const bool own_times : {true, false}) {
+    Model m("geared down");
+    const NodeId end = m.add_node("end"), pinion = m.add_node("pinion"), wheel = m.add_node("wheel");
+    m.set_reference(end, run_up(rpm(600.0), rpm(1200.0), 0.0, 10.0));
+    m.hold(end);
+    m.add<Inertia>("J_1", {pinion}, {.inertia = 1.0});
+    m.add<Inertia>("J_2", {wheel}, {.inertia = 1.0});
+    m.add<ShaftSpring>("shaft", {end, pinion}, {.stiffness = k, .damping = 300.0});
+    m.add<IdealGear>("gear", {pinion, wheel}, {.ratio = -1.0 / 3.0});
+    m.add<EngineOrderTorque>("load", {wheel},
+                             {.harmonics = {{1.0, 30.0}}, .mean = 3000.0, .twist_feedback = false});
+    const System system = m.build();
+    OrderTracking tracking(system, {"shaft.torque_Nm"}, {1.0 / 3.0}, 4.0, own_times),
+        waterfall(system, {"load.torque_Nm"}, {0.25, 0.5}, 4.0, own_times);
+    const Method method = own_times ? Method{.name = kExact, .tolerance = 1e-9} : Method{.step = 1e-4};
+    REQUIRE(run_method(system, method, {.t_end = 10.0}, {&tracking, &waterfall}).ok());
+    const OrderTracks& tracks = tracking.tracks();
+    REQUIRE(tracks.time.size() > 50);
+    for (std::size_t w = 0; w < tracks.time.size(); ++w) {
+      if (tracks.time[w] < 1.0) continue;  // the start from rest
+      const double rate = tracks.speed[w] / 3.0;
+      CHECK(tracks.amplitude[0][0][w] == Approx(10.0 * k / (k - reduced * rate * rate)).epsilon(1e-3));
+      // The lines beside order 1/3 hold about its 30 N m, and nothing of the mean.
+      for (const std::size_t line : {0, 1}) CHECK(waterfall.tracks().amplitude[0][line][w] < 60.0);
+    }
+  }
+}
+
+TEST_CASE(
+    "Orders of angles and speeds of a free train at a nominal run-up are its vibration beside the drift") {
+  // Two equal discs on a shaft, and 20 + 50 cos(phi) N m on the second: the angle of the second has the dynamic compliance
+  // d/(d^2 - s^2), d = k + i w c - J w^2, s = k + i w c.
+  const double k = 1e6, c = 300.0;
+  Model m("free");
+  const NodeId first = m.add_node("first"), second = m.add_node("second");
+  m.set_reference(first, run_up(rpm(600.0), rpm(1200.0), 0.0, 10.0));
+  m.add<Inertia>("J_1", {first}, {.inertia = 1.0});
+  m.add<Inertia>("J_2", {second}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {first, second}, {.stiffness = k, .damping = c});
+  m.add<EngineOrderTorque>("load", {second},
+                           {.harmonics = {{1.0, 50.0}}, .mean = 20.0, .twist_feedback = false});
+  const System system = m.build();
+  OrderTracking tracking(system, {"second.angle_rad", "second.speed_rad_per_s", "shaft.torque_Nm"}, {1.0},
+                         4.0, true);
+  REQUIRE(run_method(system, {.name = kExact, .tolerance = 1e-9}, {.t_end = 10.0}, {&tracking}).ok());
+  const OrderTracks& tracks = tracking.tracks();
+  REQUIRE(tracks.time.size() > 50);
+  for (std::size_t i = 0; i < tracks.time.size(); ++i) {
+    if (tracks.time[i] < 1.0) continue;  // the start from rest
+    const double w = tracks.speed[i];
+    const std::complex<double> s(k, w * c), d = s - w * w;
+    const double angle = 50.0 * std::abs(d / (d * d - s * s));
+    CHECK(tracks.amplitude[0][0][i] == Approx(angle).epsilon(1e-3));
+    CHECK(tracks.amplitude[1][0][i] == Approx(w * angle).epsilon(2e-3));
+    CHECK(tracks.amplitude[2][0][i] == Approx(50.0 * std::abs(s * w * w / (d * d - s * s))).epsilon(2e-3));
+  }
 }
