@@ -95,8 +95,8 @@ struct SectionJudgement {
 struct ChatterRange {
   int section = 0;
   ExceededRange range;  ///< worst: largest half range over |mean| [-]
-  long separated =
-      0;  ///< number of its speeds, and peaks between them, at which the contact's force changes its sign
+  /// Number of its speeds, and of peaks and points between them, at which the contact's force changes its sign.
+  long separated = 0;
 };
 
 struct ClassJudgement {
