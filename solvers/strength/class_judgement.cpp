@@ -119,7 +119,7 @@ class Judge {
     for (const double speed : sweep_.speeds) found.limits.push_back(limit(data, speed));
     for (const CurvePoint& p : curve.points) {
       const double used = curve.ratio(p);
-      if (!(used > found.utilisation)) continue;
+      if (!(used > found.utilisation) && (std::isnan(used) || found.judged())) continue;
       found.utilisation = used, found.utilisation_speed = p.speed, found.rule = limit(data, p.speed).rule;
     }
     if (!std::isnan(data.tensile_strength)) {
@@ -273,6 +273,14 @@ std::vector<Finding> check_strength(const Strength& strength) {
     for (const auto& [name, value] :
          {std::pair{"permissible_torque", s.permissible_torque}, {"transient_torque", s.transient_torque}})
       check(name, value, kLeast, kMost, "N m", "> 0");
+    const auto ordered = [&](const char* parameter, double transient, double continuous, const char* unit) {
+      if (transient < continuous)
+        findings.push_back({place, parameter, rounded_text(transient, kTypedDigits), unit,
+                            "is below what is permitted in continuous running, " +
+                                rounded_text(continuous, kTypedDigits) + " " + unit});
+    };
+    ordered("transient_stress", s.transient_stress, s.permissible_stress, "Pa");
+    ordered("transient_torque", s.transient_torque, s.permissible_torque, "N m");
     check("permissible_heat", s.permissible_heat, kLeast, kMost, "W", "> 0");
     check("sn_range", s.sn.reference, kLeast, kMost, "Pa", "> 0");
     check("sn_cycles", s.sn.cycles, kLeast, kMost, "", "> 0");

@@ -391,6 +391,33 @@ TEST_CASE("All resonances below the end of the rule are judged, however many lar
   }
 }
 
+TEST_CASE("A section that does not vibrate uses nothing of its limit", "[strength]") {
+  LinearSweep still = triangle();
+  for (Vector* values : {&still.sections[0].maximum, &still.sections[0].minimum}) values->setZero();
+  still.peaks.clear();
+  Strength strength;
+  strength.sections = {shaft_of(0.05)};
+  strength.sections[0].permissible_torque = 500.0;
+  const ClassJudgement found = judge_sweep(still, strength);
+  CHECK(found.sections[0].judged());
+  CHECK(found.sections[0].utilisation == 0.0);
+  CHECK(found.sections[0].rule == "permissible torque");
+  CHECK(found.not_judged == std::vector<std::string>{"mesh.force_N"});
+}
+
+TEST_CASE("A limit while a range is passed is not below that in continuous running", "[strength]") {
+  Strength strength;
+  strength.sections = {shaft_of(0.05)};
+  strength.sections[0].permissible_torque = 500.0, strength.sections[0].transient_torque = 400.0;
+  strength.sections[0].permissible_stress = 30e6, strength.sections[0].transient_stress = 30e6;
+  const std::vector<Finding> findings = check_strength(strength);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].parameter == "transient_torque");
+  CHECK(findings[0].value == "400");
+  CHECK(findings[0].unit == "N m");
+  CHECK(findings[0].range.find("500 N m") != std::string::npos);
+}
+
 TEST_CASE("Faults of strength data are listed at once", "[strength]") {
   Strength strength;
   SectionStrength bad = shaft_of(0.05);
