@@ -7,6 +7,8 @@ namespace drev {
 
 namespace {
 
+constexpr double kSameSpeed = 1e-9;  // difference of one and the same speed relative to it [-]
+
 /// Stable, or not judged: a train of many unknowns.
 bool may_stay(const SweptMotion& motion) { return motion.stable || !motion.judged; }
 
@@ -65,6 +67,37 @@ void add_peaks(const NonlinearSweep& given, LinearSweep& sweep) {
   });
 }
 
+/// The points of stable curves beside the speeds. Where another stable curve, straight between its points, is above a section's
+/// half range, the section's values are not numbers.
+void add_points(const NonlinearSweep& given, LinearSweep& sweep) {
+  const auto asked = [&](double speed) {
+    return std::any_of(sweep.speeds.begin(), sweep.speeds.end(),
+                       [speed](double s) { return std::abs(s - speed) <= kSameSpeed * s; });
+  };
+  for (const SweptBranch& branch : given.branches)
+    for (const SweptMotion& m : branch.motions)
+      if (may_stay(m) && m.speed > sweep.speeds.front() && m.speed < sweep.speeds.back() && !asked(m.speed))
+        sweep.points.push_back({m.speed, m.mean, m.maximum - m.mean, m.minimum - m.mean, m.heat});
+  const auto slower = [](const SweepPoint& p, double speed) { return p.speed < speed; };
+  std::stable_sort(sweep.points.begin(), sweep.points.end(),
+                   [](const SweepPoint& a, const SweepPoint& b) { return a.speed < b.speed; });
+  for (const SweptBranch& branch : given.branches)
+    for (std::size_t i = 0; i + 1 < branch.motions.size(); ++i) {
+      const auto [low, high] = std::minmax(branch.motions[i], branch.motions[i + 1],
+                                           [](const auto& a, const auto& b) { return a.speed < b.speed; });
+      if (!may_stay(low) || !may_stay(high)) continue;
+      const Vector from = low.half_range(), to = high.half_range();
+      for (auto p = std::lower_bound(sweep.points.begin(), sweep.points.end(),
+                                     std::nextafter(low.speed, high.speed), slower);
+           p != sweep.points.end() && p->speed < high.speed; ++p) {
+        const double part = (p->speed - low.speed) / (high.speed - low.speed);
+        for (Eigen::Index c = 0; c < from.size(); ++c)
+          if (from[c] + part * (to[c] - from[c]) > p->half_range(static_cast<int>(c)))
+            p->mean[c] = p->maximum[c] = p->minimum[c] = p->heat[c] = std::nan("");
+      }
+    }
+}
+
 }  // namespace
 
 WorstMotions worst_motions(const NonlinearSweep& given) {
@@ -75,7 +108,7 @@ WorstMotions worst_motions(const NonlinearSweep& given) {
   WorstMotions found;
   std::vector<Answer> answers;
   for (const double speed : given.speeds) {
-    const auto here = [speed](double other) { return std::abs(other - speed) <= 1e-9 * speed; };
+    const auto here = [speed](double other) { return std::abs(other - speed) <= kSameSpeed * speed; };
     Answer answer;
     for (const SweptBranch& branch : given.branches)
       for (const SweptMotion& motion : branch.motions)
@@ -117,6 +150,7 @@ WorstMotions worst_motions(const NonlinearSweep& given) {
     }
   }
   add_peaks(given, sweep);
+  add_points(given, sweep);
   return found;
 }
 

@@ -289,15 +289,15 @@ std::string case_text(const ClassCase& c) {
           s.name + ": heat exceeds what is permitted, at " + digits(to_rpm(j.heat_speed), 5) + " rpm", 2);
   }
   for (const ChatterRange& range : c.judgement.chatter)
-    ranges +=
-        wrap(c.sweep.sections[static_cast<std::size_t>(range.section)].name +
-                 ": vibratory force exceeds the mean from " + rpm_range(range.range.from, range.range.to) +
-                 kept_text(range.range) + ", up to " + bounded(range.range.worst, 3) + " times at " +
-                 digits(to_rpm(range.range.worst_speed), 5) + " rpm: the gears hammer" +
-                 (c.request.options.close_contacts ? "; without '--contact closed' the teeth are followed"
-                                                   : "; they separate at " + std::to_string(range.separated) +
-                                                         " of the speeds and peaks in it"),
-             2);
+    ranges += wrap(
+        c.sweep.sections[static_cast<std::size_t>(range.section)].name +
+            ": vibratory force exceeds the mean from " + rpm_range(range.range.from, range.range.to) +
+            kept_text(range.range) + ", up to " + bounded(range.range.worst, 3) + " times at " +
+            digits(to_rpm(range.range.worst_speed), 5) + " rpm: the gears hammer" +
+            (c.request.options.close_contacts
+                 ? "; without '--contact closed' the teeth are followed"
+                 : "; they separate at " + std::to_string(range.separated) + " of the computed speeds in it"),
+        2);
   std::string text = columns_text(rows);
   if (!ranges.empty()) text += "\n" + ranges;
   for (const std::string& note : c.notes) text += "\n" + wrap(note, 0);

@@ -90,6 +90,13 @@ struct SweepPeak {
   double twist_half_range = mean, heat = mean;
 };
 
+/// Values of all sections at a speed beside those of the sweep, as in SweepSection; not a number: not known.
+struct SweepPoint {
+  double speed = 0.0;                   ///< speed of the reference shaft [rad/s]
+  Vector mean, maximum, minimum, heat;  ///< infinite extremes: nothing damps the section
+  double half_range(int section) const { return 0.5 * (maximum[section] - minimum[section]); }
+};
+
 /// An order that meets a damped natural frequency within the speeds.
 struct SweepCritical {
   int mode = 0;  ///< number of the elastic mode, from 0
@@ -124,7 +131,10 @@ struct LinearSweep {
   double cycle =
       0.0;  ///< cycle of the sum of all orders [rad of the reference shaft]; not a number: they have none
   std::vector<SweepSection> sections;
-  std::vector<SweepPeak> peaks;          ///< peaks by section, then by size; at most 10 for each section
+  std::vector<SweepPeak> peaks;  ///< peaks by section, then by size; at most 10 for each section
+  /// By ascending speed, if options.refine is set: where an order meets a mode and half the mode's width below and above. Every
+  /// resonance has points, whether or not its peak is among `peaks`.
+  std::vector<SweepPoint> points;
   std::vector<SweepCritical> criticals;  ///< critical speeds, ascending
   SweepModes modes;                      ///< modes, if options.refine is set
   std::string modes_note;                ///< why modes are missing although options.refine is set
@@ -153,7 +163,7 @@ struct SweepLargest {
   double value = std::numeric_limits<double>::quiet_NaN(), speed = value;
 };
 /// Largest values of a section at the speeds and at the peaks that were located between them. A twist is that at the
-/// peaks of the half range; heat has a peak of its own.
+/// peaks of the half range; heat is that of `points`, too, and has a peak of its own.
 SweepLargest largest_half_range(const LinearSweep& sweep, int section);
 SweepLargest largest_twist(const LinearSweep& sweep, int section);
 SweepLargest largest_heat(const LinearSweep& sweep, int section);

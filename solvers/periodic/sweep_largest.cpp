@@ -39,6 +39,7 @@ SweepLargest largest_twist(const LinearSweep& sweep, int section) {
 SweepLargest largest_heat(const LinearSweep& sweep, int section) {
   const SweepSection& s = section_of(sweep, section);
   SweepLargest largest = largest_of(sweep, section, s.heat, &SweepPeak::heat);
+  for (const SweepPoint& point : sweep.points) take(largest, point.heat[section], point.speed);
   take(largest, s.heat_peak, s.heat_peak_speed);
   return largest;
 }

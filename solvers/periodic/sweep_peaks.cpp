@@ -30,14 +30,13 @@ constexpr double kTooDamped = 0.7;      // damping ratio above which an order ha
 constexpr std::size_t kMostPeaks = 10;  // largest number of peaks of a section
 constexpr double kSmallPeak = 1e-3;     // smallest peak relative to the section's largest one [-]
 constexpr double kSmallHeat =
-    0.1;  // smallest heat relative to the section's largest one that is followed [-]
+    0.1;  // smallest heat that is followed relative to the section's largest one [-]
 constexpr double kSameSeed = 1e-2;   // part of a mode's half width below which two seeds are one [-]
 constexpr double kPeakSpeed = 1e-7;  // tolerance of a peak's speed relative to it [-]
 constexpr double kNear = 1e-6;       // distance from an undamped resonance relative to its speed [-]
 constexpr double kAway = 1e-4;       // larger distance, beside which the mode's growth towards it shows [-]
-constexpr double kResonantGrowth =
-    10.0;                         // growth from kAway to kNear above which the mode moves a section [-]
-constexpr double kOwnPart = 0.1;  // smallest own part of an amplitude whose top is the mode's [-]
+constexpr double kResonantGrowth = 10.0;  // growth from kAway to kNear above which a section moves [-]
+constexpr double kOwnPart = 0.1;          // smallest own part of an amplitude whose top is the mode's [-]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// For each mode of `last` the number of the mode of `next` it has become, by shape: largest |x' y| / (|x|
@@ -173,15 +172,18 @@ class Search {
         low_(sweep.speeds.front()),
         high_(sweep.speeds.back()) {
     find_content();
-    for (std::size_t c = 0; c < sweep.sections.size(); ++c) {
-      const Vector curve = sweep.sections[c].half_range();
-      largest_.push_back(0.0);
-      for (std::size_t i = 0; i < sweep.speeds.size(); ++i) {
-        Values& here = curves_[sweep.speeds[i]];
-        here.half_range.push_back(curve[static_cast<Eigen::Index>(i)]);
-        here.heat.push_back(sweep.sections[c].heat[static_cast<Eigen::Index>(i)]);
-        note_largest(c, here.half_range.back());
+    const auto count = static_cast<Eigen::Index>(sweep.sections.size());
+    largest_.assign(sweep.sections.size(), 0.0);
+    for (std::size_t i = 0; i < sweep.speeds.size(); ++i) {
+      SweepPoint point{sweep.speeds[i], Vector(count), Vector(count), Vector(count), Vector(count)};
+      for (Eigen::Index c = 0; c < count; ++c) {
+        const auto& s = sweep.sections[static_cast<std::size_t>(c)];
+        const auto at = static_cast<Eigen::Index>(i);
+        point.mean[c] = s.mean[at], point.maximum[c] = s.maximum[at], point.minimum[c] = s.minimum[at];
+        point.heat[c] = s.heat[at];
       }
+      note_largest(point);
+      curves_.emplace(point.speed, std::move(point));
     }
   }
 
@@ -209,15 +211,19 @@ class Search {
         for (const double at : {speed - width, speed, speed + width})
           if (at > low_ && at < high_ && !is_near(at, kSameSeed * width)) all_sections(at);
       }
+    for (const auto& [speed, point] : curves_)
+      if (!std::binary_search(sweep_.speeds.begin(), sweep_.speeds.end(), speed) ||
+          point.maximum.array().isInf().any())
+        sweep_.points.push_back(point);
   }
 
   void find_peaks() {
-    const std::vector<std::pair<double, Values>> points(curves_.begin(), curves_.end());
-    std::vector<double> speeds, values(points.size());
-    for (const auto& [speed, at] : points) speeds.push_back(speed);
+    std::vector<double> speeds, values(curves_.size());
+    for (const auto& [speed, at] : curves_) speeds.push_back(speed);
     for (std::size_t c = 0; c < sweep_.sections.size(); ++c) {
       std::vector<SweepPeak> peaks;
-      for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i].second.half_range[c];
+      std::transform(curves_.begin(), curves_.end(), values.begin(),
+                     [c](const auto& at) { return at.second.half_range(static_cast<int>(c)); });
       for (const TopBracket& top : tops_of(speeds, values)) {
         const double here = values[top.point];
         if (!(here > kSmallPeak * largest_[c])) continue;
@@ -244,7 +250,7 @@ class Search {
   void find_heat() {
     for (std::size_t c = 0; c < sweep_.sections.size(); ++c) {
       std::map<double, double> heats;
-      for (const auto& [speed, at] : curves_) heats[speed] = at.heat[c];
+      for (const auto& [speed, at] : curves_) heats[speed] = at.heat[static_cast<Eigen::Index>(c)];
       for (const SweepPeak& peak : sweep_.peaks)
         if (peak.section == static_cast<int>(c) && std::isfinite(peak.half_range))
           heats[peak.speed] = peak.heat;
@@ -305,12 +311,10 @@ class Search {
   }
 
  private:
-  struct Values {
-    std::vector<double> half_range, heat;  // by section
-  };
-
-  void note_largest(std::size_t section, double half_range) {
-    if (std::isfinite(half_range)) largest_[section] = std::max(largest_[section], half_range);
+  void note_largest(const SweepPoint& point) {
+    for (std::size_t c = 0; c < largest_.size(); ++c)
+      if (const double here = point.half_range(static_cast<int>(c)); std::isfinite(here))
+        largest_[c] = std::max(largest_[c], here);
   }
   /// Finds the orders in which any load has content, at either end of the speed range.
   void find_content() {
@@ -336,34 +340,36 @@ class Search {
     const auto above = curves_.lower_bound(speed - distance);
     return above != curves_.end() && above->first <= speed + distance;
   }
-  void all_sections(double speed) {
-    if (curves_.contains(speed)) return;
+  SweepPoint solved(double speed) {
     pause_();
     response_.vibration(speed, point_);
+    response_.mean(speed, point_);
     sum_.extremes(point_.amplitude, extremes_);
-    Values& here = curves_[speed];
-    for (std::size_t c = 0; c < extremes_.size(); ++c) {
-      here.half_range.push_back(extremes_[c].half_range());
-      here.heat.push_back(point_.heat[static_cast<Eigen::Index>(c)]);
-      note_largest(c, here.half_range.back());
+    SweepPoint here{speed, point_.mean, point_.mean, point_.mean, point_.heat};
+    for (Eigen::Index c = 0; c < here.mean.size(); ++c) {
+      here.maximum[c] = extremes_[static_cast<std::size_t>(c)].max;
+      here.minimum[c] = extremes_[static_cast<std::size_t>(c)].min;
     }
+    note_largest(here);
+    return here;
   }
-  /// Enters an infinite half range at a speed at which an order meets an undamped mode, for each section that the mode
+  void all_sections(double speed) {
+    if (!curves_.contains(speed)) curves_.emplace(speed, solved(speed));
+  }
+  /// Enters infinite extremes at a speed at which an order meets an undamped mode, for each section that the mode
   /// moves: its amplitude grows towards the speed as one over the distance.
   void unbounded(double speed, int order) {
     const double away = (1.0 + kAway) * speed;
-    all_sections(away);
-    const Values beside = curves_.at(away);
-    if (std::find(sweep_.speeds.begin(), sweep_.speeds.end(), away) == sweep_.speeds.end())
-      curves_.erase(away);
+    SweepPoint beside = solved(away);
+    beside.speed = speed;
     response_.vibration(away, point_, order);
     const Vector at_away = point_.amplitude.row(order).cwiseAbs();
     response_.vibration((1.0 + kNear) * speed, point_, order);
     const Vector at_near = point_.amplitude.row(order).cwiseAbs();
-    Values& here = curves_.try_emplace(speed, beside).first->second;
-    for (std::size_t c = 0; c < here.half_range.size(); ++c)
-      if (const auto s = static_cast<Eigen::Index>(c); at_near[s] > kResonantGrowth * at_away[s])
-        here.half_range[c] = kInfinite;
+    SweepPoint& here = curves_.try_emplace(speed, std::move(beside)).first->second;
+    for (Eigen::Index c = 0; c < here.maximum.size(); ++c)
+      if (at_near[c] > kResonantGrowth * at_away[c])
+        here.maximum[c] = kInfinite, here.minimum[c] = -kInfinite;
   }
   /// Adds mean, extremes, twist and heat at the peak's speed.
   void add_values(SweepPeak& peak) {
@@ -454,8 +460,8 @@ class Search {
   LinearSweep& sweep_;
   const DampedPoles& poles_;
   double low_, high_;
-  std::map<double, Values> curves_;  // half ranges and heat of all sections by speed
-  std::vector<double> largest_;      // largest finite half range of each section
+  std::map<double, SweepPoint> curves_;  // of the grid and the seeds, by speed
+  std::vector<double> largest_;          // largest finite half range of each section
   std::vector<bool> has_content_;
   std::vector<int> numbers_;  // number of the order of each critical speed
   LinearResponse::Point point_;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <optional>
+#include <set>
 
 #include "core/names/rounded_text.hpp"
 #include "solvers/strength/exceeded_ranges.hpp"
@@ -15,26 +17,27 @@ namespace drev {
 
 namespace {
 
-/// Values at the speeds of the sweep and at the section's peaks whose value is known, by ascending speed; the larger one
-/// where a peak is at one of the speeds.
-std::vector<CurvePoint> curve_of(const LinearSweep& sweep, const LimitedCurve& limited,
-                                 const std::function<double(const SweepPeak&)>& at_peak) {
-  const int section = limited.section;
-  const SweepSection& s = sweep.sections[static_cast<std::size_t>(section)];
-  std::vector<CurvePoint> curve;
+/// Values at the speeds of the sweep, at the section's peaks and at the points beside the speeds, where they are known, by
+/// ascending speed; the largest one of a speed.
+std::vector<CurvePoint> curve_of(const LinearSweep& sweep, const LimitedCurve& limited) {
+  std::vector<CurvePoint> all, curve;
   for (std::size_t i = 0; i < sweep.speeds.size(); ++i)
-    curve.push_back({sweep.speeds[i], limited.value(s, static_cast<Eigen::Index>(i))});
-  for (const SweepPeak& peak : sweep.peaks) {
-    if (peak.section != section || std::isnan(at_peak(peak))) continue;
-    const auto at = std::find(sweep.speeds.begin(), sweep.speeds.end(), peak.speed);
-    if (at == sweep.speeds.end()) {
-      curve.push_back({peak.speed, at_peak(peak)});
-      continue;
-    }
-    double& value = curve[static_cast<std::size_t>(at - sweep.speeds.begin())].value;
-    value = std::max(value, at_peak(peak));
+    all.push_back({sweep.speeds[i], limited.value(sweep, static_cast<Eigen::Index>(i))});
+  const auto add = [&](double speed, double half_range, double mean) {
+    if (const double value = limited.quantity(half_range, mean); !std::isnan(value))
+      all.push_back({speed, value});
+  };
+  for (const SweepPeak& peak : sweep.peaks)
+    if (peak.section == limited.section) add(peak.speed, peak.half_range, peak.mean);
+  for (const SweepPoint& p : sweep.points)
+    add(p.speed, p.half_range(limited.section), p.mean[limited.section]);
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.speed < b.speed; });
+  for (const CurvePoint& p : all) {
+    if (curve.empty() || curve.back().speed != p.speed)
+      curve.push_back(p);
+    else
+      curve.back().value = std::fmax(curve.back().value, p.value);
   }
-  std::sort(curve.begin(), curve.end(), [](const auto& a, const auto& b) { return a.speed < b.speed; });
   return curve;
 }
 
@@ -53,13 +56,13 @@ class Judge {
   /// The half range of a torque over its limit.
   LimitedCurve torque_curve(int section, int number) const {
     const SectionStrength& data = strength_.sections[static_cast<std::size_t>(number)];
-    LimitedCurve curve{section, number, half_range, [this, &data](const CurvePoint& p) {
-                         return p.value / limit(data, p.speed).continuous;
-                       }};
+    LimitedCurve curve{
+        section, number, [](double half_range, double) { return half_range; },
+        [this, &data](const CurvePoint& p) { return p.value / limit(data, p.speed).continuous; }};
     curve.transient_ratio = [this, &data](const CurvePoint& p) {
       return p.value / limit(data, p.speed).transient;
     };
-    curve.points = curve_of(sweep_, curve, [](const SweepPeak& peak) { return peak.half_range; });
+    curve.points = curve_of(sweep_, curve);
     return curve;
   }
 
@@ -89,7 +92,7 @@ class Judge {
       double value = low.value + (end - low.speed) / (high.speed - low.speed) * (high.value - low.value);
       if (sweep_at) {
         if (!there) there = sweep_at({end});
-        value = curve.value(there->sections[static_cast<std::size_t>(curve.section)], 0);
+        value = curve.value(*there, 0);
       }
       if (std::isfinite(value)) points.insert(above, {end, value});
     }
@@ -97,12 +100,10 @@ class Judge {
 
   /// The half range of a contact's force over its mean.
   LimitedCurve chatter_curve(int section) const {
-    LimitedCurve curve{
-        section, -1,
-        [](const SweepSection& s, Eigen::Index i) { return half_range(s, i) / std::abs(s.mean[i]); },
-        [](const CurvePoint& p) { return p.value; }};
-    curve.points =
-        curve_of(sweep_, curve, [](const SweepPeak& peak) { return peak.half_range / std::abs(peak.mean); });
+    LimitedCurve curve{section, -1,
+                       [](double half_range, double mean) { return half_range / std::abs(mean); },
+                       [](const CurvePoint& p) { return p.value; }};
+    curve.points = curve_of(sweep_, curve);
     return curve;
   }
 
@@ -118,7 +119,7 @@ class Judge {
     for (const double speed : sweep_.speeds) found.limits.push_back(limit(data, speed));
     for (const CurvePoint& p : curve.points) {
       const double used = curve.ratio(p);
-      if (!(used > found.utilisation)) continue;
+      if (!(used > found.utilisation) && (std::isnan(used) || found.judged())) continue;
       found.utilisation = used, found.utilisation_speed = p.speed, found.rule = limit(data, p.speed).rule;
     }
     if (!std::isnan(data.tensile_strength)) {
@@ -138,23 +139,24 @@ class Judge {
 
   void add_chatter(const LimitedCurve& curve, std::vector<ChatterRange>& chatter) const {
     const SweepSection& s = sweep_.sections[static_cast<std::size_t>(curve.section)];
-    for (const ExceededRange& range : curve.ranges) {
-      ChatterRange found{curve.section, range, 0};
-      const auto inside = [&range](double speed) { return speed >= range.from && speed <= range.to; };
-      for (std::size_t i = 0; i < sweep_.speeds.size(); ++i)
-        if (inside(sweep_.speeds[i]) && s.separates(static_cast<Eigen::Index>(i))) ++found.separated;
-      for (const SweepPeak& peak : sweep_.peaks)
-        if (peak.section == curve.section && !peak.at_end && inside(peak.speed) &&
-            s.separates(peak.mean, peak.maximum, peak.minimum))
-          ++found.separated;
-      chatter.push_back(found);
+    std::set<double> separated;
+    const auto note = [&](double speed, double mean, double maximum, double minimum) {
+      if (s.separates(mean, maximum, minimum)) separated.insert(speed);
+    };
+    for (std::size_t i = 0; i < sweep_.speeds.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      note(sweep_.speeds[i], s.mean[at], s.maximum[at], s.minimum[at]);
     }
+    for (const SweepPeak& peak : sweep_.peaks)
+      if (peak.section == curve.section) note(peak.speed, peak.mean, peak.maximum, peak.minimum);
+    for (const SweepPoint& p : sweep_.points)
+      note(p.speed, p.mean[curve.section], p.maximum[curve.section], p.minimum[curve.section]);
+    for (const ExceededRange& range : curve.ranges)
+      chatter.push_back({curve.section, range,
+                         std::distance(separated.lower_bound(range.from), separated.upper_bound(range.to))});
   }
 
  private:
-  static double half_range(const SweepSection& s, Eigen::Index i) {
-    return 0.5 * (s.maximum[i] - s.minimum[i]);
-  }
   TorqueLimit limit(const SectionStrength& data, double speed) const {
     return torque_limit(data, speed / strength_.rated_speed);
   }
@@ -271,6 +273,14 @@ std::vector<Finding> check_strength(const Strength& strength) {
     for (const auto& [name, value] :
          {std::pair{"permissible_torque", s.permissible_torque}, {"transient_torque", s.transient_torque}})
       check(name, value, kLeast, kMost, "N m", "> 0");
+    const auto ordered = [&](const char* parameter, double transient, double continuous, const char* unit) {
+      if (transient < continuous)
+        findings.push_back({place, parameter, rounded_text(transient, kTypedDigits), unit,
+                            "is below what is permitted in continuous running, " +
+                                rounded_text(continuous, kTypedDigits) + " " + unit});
+    };
+    ordered("transient_stress", s.transient_stress, s.permissible_stress, "Pa");
+    ordered("transient_torque", s.transient_torque, s.permissible_torque, "N m");
     check("permissible_heat", s.permissible_heat, kLeast, kMost, "W", "> 0");
     check("sn_range", s.sn.reference, kLeast, kMost, "Pa", "> 0");
     check("sn_cycles", s.sn.cycles, kLeast, kMost, "", "> 0");

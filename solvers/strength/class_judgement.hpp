@@ -70,9 +70,9 @@ struct SectionJudgement {
   double modulus = SectionStrength::kNone;  ///< polar section modulus [m^3]; not a number: no diameter
   Vector stress;                    ///< half range of the local stress at each speed [Pa]; empty: no diameter
   std::vector<TorqueLimit> limits;  ///< limit at each speed
-  double utilisation = 0.0;         ///< largest half range over continuous limit [-]; 0: there is no limit
+  double utilisation = 0.0;         ///< largest half range over continuous limit [-]
   double utilisation_speed = 0.0;   ///< its speed [rad/s]
-  std::string rule;                 ///< rule of the limit at that speed
+  std::string rule;                 ///< rule of the limit at that speed; empty: there is no limit
   /// Highest speed for which IACS UR M68.5 has a limit, a speed ratio of 1.05 [rad/s], and the rule of the limit from there
   /// on (empty: there is none, and the torque is not judged). Not a number: the rule is not asked for, or holds throughout.
   double rule_ends = std::numeric_limits<double>::quiet_NaN();
@@ -88,15 +88,15 @@ struct SectionJudgement {
   /// Whether the limit may be exceeded where heat is not known.
   bool heat_undecided() const { return heat_limited() && !heat_exceeds() && !heat_unknown.empty(); }
   bool heat_judged() const { return heat_limited() && !heat_undecided(); }
-  bool judged() const { return utilisation > 0.0; }  ///< whether the torque is
+  bool judged() const { return !rule.empty(); }  ///< whether the torque is
 };
 
 /// A speed range in which the vibratory force of a mesh exceeds its mean force, so that the teeth hammer.
 struct ChatterRange {
   int section = 0;
   ExceededRange range;  ///< worst: largest half range over |mean| [-]
-  long separated =
-      0;  ///< number of its speeds, and peaks between them, at which the contact's force changes its sign
+  /// Number of its speeds, and of peaks and points between them, at which the contact's force changes its sign.
+  long separated = 0;
 };
 
 struct ClassJudgement {

@@ -13,7 +13,8 @@ namespace {
 constexpr double kEndSpeed = 1e-7;  // width of an end's bracket relative to its speed [-]
 constexpr int kMostRounds = 120;    // largest number of sweeps for the ends; bisection alone needs 60
 constexpr double kTopSpeed = 1e-7;  // tolerance of a top's speed relative to it [-]
-constexpr double kLowTop = 0.1;     // part of the curve's largest ratio below which a top is not followed [-]
+constexpr double kLowTop =
+    0.1;  // ratio, or part of a largest ratio below 1, below which no top is followed [-]
 
 using Ratio = std::function<double(const CurvePoint&)>;
 
@@ -36,9 +37,10 @@ void find_tops(std::size_t number, const LimitedCurve& curve, const Ratio& ratio
     speeds.push_back(p.speed), ratios.push_back(ratio(p));
     if (std::isfinite(ratios.back())) largest = std::max(largest, ratios.back());
   }
+  const double least = kLowTop * std::min(largest, 1.0);
   for (const TopBracket& top : tops_of(speeds, ratios)) {
     const double here = ratios[top.point], speed = speeds[top.point];
-    if (!std::isfinite(here) || !(here > kLowTop * largest) || !(top.high > top.low)) continue;
+    if (!std::isfinite(here) || !(here > least) || !(top.high > top.low)) continue;
     tops.push_back(
         {number, &ratio, here, top.at_end, MaximumSearch(top.low, top.start, top.high, kTopSpeed * speed)});
   }
@@ -68,8 +70,7 @@ bool climb(std::vector<FollowedTop>& tops, const std::vector<LimitedCurve>& curv
   return solve_at(trials, sweep_at, [&](std::size_t i, const LinearSweep& sweep, Eigen::Index at) {
     FollowedTop& top = tops[i];
     const LimitedCurve& curve = curves[top.curve];
-    const CurvePoint here{trials[i],
-                          curve.value(sweep.sections[static_cast<std::size_t>(curve.section)], at)};
+    const CurvePoint here{trials[i], curve.value(sweep, at)};
     top.search.take((*top.ratio)(here));
     const BracketedMaximum best = top.search.best();
     if (best.at == here.speed) top.best = here;
@@ -159,8 +160,7 @@ bool narrow(std::vector<EndBracket>& ends, const std::vector<LimitedCurve>& curv
   for (const EndBracket& b : ends) trials.push_back(b.found() ? 0.0 : b.trial());
   return solve_at(trials, sweep_at, [&](std::size_t i, const LinearSweep& sweep, Eigen::Index at) {
     const LimitedCurve& curve = curves[ends[i].curve];
-    const double value = curve.value(sweep.sections[static_cast<std::size_t>(curve.section)], at);
-    take(ends[i], {trials[i], curve.ratio({trials[i], value})});
+    take(ends[i], {trials[i], curve.ratio({trials[i], curve.value(sweep, at)})});
   });
 }
 

@@ -28,14 +28,20 @@ struct CurvePoint {
 struct LimitedCurve {
   int section = 0;   ///< number in LinearSweep::sections
   int strength = 0;  ///< number in Strength::sections; -1: it is the chatter of a contact
-  /// The quantity of the section at speed number i of a sweep.
-  std::function<double(const SweepSection&, Eigen::Index i)> value;
+  /// The quantity, of half range and mean of the section.
+  std::function<double(double half_range, double mean)> quantity;
   /// Its ratio to the limit [-]; not a number: there is no limit.
   std::function<double(const CurvePoint&)> ratio;
   /// Its ratio to the limit in transient running [-]; empty: that is not asked for.
   std::function<double(const CurvePoint&)> transient_ratio = {};
   std::vector<CurvePoint> points = {};  ///< by ascending speed
   std::vector<ExceededRange> ranges = {};
+
+  /// The quantity at speed number i of a sweep.
+  double value(const LinearSweep& sweep, Eigen::Index i) const {
+    const SweepSection& s = sweep.sections[static_cast<std::size_t>(section)];
+    return quantity(0.5 * (s.maximum[i] - s.minimum[i]), s.mean[i]);
+  }
 };
 
 /// Adds the tops of both ratios that lie between the points to the points of all curves. sweep_at: not empty.

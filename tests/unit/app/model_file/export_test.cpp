@@ -227,3 +227,63 @@ TEST_CASE("The reference shaft's motion is written where it is one of the catalo
   function.model.add<AppliedTorque>("own", {"a"}, {.torque = [](double) { return 1.0; }});
   CHECK_THROWS_WITH(write(function), Catch::Contains("driven/own") && Catch::Contains("function of C++"));
 }
+
+TEST_CASE(
+    "Strength data are exported and read back with every key, and a misfire case is named as left out") {
+  const std::string file = R"(format = 1
+[parameters]
+torque = 100
+[nodes]
+a = { nominal_speed_rpm = 600 }
+b = {}
+[elements]
+J_a = { type = "inertia", node = "a", inertia_kg_m2 = 1 }
+J_b = { type = "inertia", node = "b", inertia_kg_m2 = 2 }
+shaft = { type = "shaft_spring", nodes = ["a", "b"], stiffness_Nm_per_rad = 1000 }
+[class]
+rated_speed_rad_per_s = 60
+misfire = { torque = 50 }
+[class.sections.shaft]
+diameter_m = 0.1
+bore_m = 0.02
+stress_concentration = 1.5
+tensile_strength_Pa = 6e8
+shape_factor = 0.5
+permissible_stress_Pa = 4e7
+transient_stress_Pa = 8e7
+permissible_torque_Nm = 500
+transient_torque_Nm = 900
+permissible_heat_W = 70
+sn_range_Pa = 1e8
+sn_cycles = 1e6
+sn_slope = 6
+)";
+  const app::ModelFile read(file, "train.toml", "");
+  const Parameters parameters(read.entry().name, read.entry().parameters);
+  const ModelCase model_case = read.entry().build(parameters);
+  const std::string text = app::export_model(read.entry(), parameters, model_case);
+  const Strength &strength = *model_case.strength, &again = *read_back(text).strength;
+  CHECK(again.rated_speed == strength.rated_speed);
+  REQUIRE(again.sections.size() == 1);
+  const auto numbers = [](const SectionStrength& s) {
+    return std::vector<double>{s.diameter,
+                               s.bore,
+                               s.stress_concentration,
+                               s.tensile_strength,
+                               s.shape_factor,
+                               s.permissible_stress,
+                               s.transient_stress,
+                               s.permissible_torque,
+                               s.transient_torque,
+                               s.permissible_heat,
+                               s.sn.reference,
+                               s.sn.cycles,
+                               s.sn.slope};
+  };
+  CHECK(numbers(again.sections[0]) == numbers(strength.sections[0]));
+  CHECK(numbers(again.sections[0]) ==
+        std::vector<double>{0.1, 0.02, 1.5, 6e8, 0.5, 4e7, 8e7, 500.0, 900.0, 70.0, 1e8, 1e6, 6.0});
+  CHECK(again.misfire.empty());
+  CHECK(text.find("# Left out: class.misfire, { torque = 50") != std::string::npos);
+  CHECK(app::left_out_of(again).empty());
+}

@@ -8,6 +8,7 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>
+#include <drev/solvers/strength/class_judgement.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -418,6 +419,14 @@ TEST_CASE("What a sweep of contacts comes to at each speed: the worst of its sta
   CHECK(std::any_of(worst.sweep.peaks.begin(), worst.sweep.peaks.end(), [&](const SweepPeak& p) {
     return p.section == 0 && p.speed > fold - 1e-3 && p.speed < 0.72 && p.half_range > mesh.half_range()[1];
   }));
+
+  // Two speeds far outside show as much: the curves' own points are judged. Teeth hammer from the fold on.
+  const WorstMotions ends =
+      worst_motions(sweep_nonlinear(Pair{}.build(), {.speeds = {0.60, 1.0}, .tolerance = 1e-4}));
+  const auto chatter = judge_sweep(ends.sweep, {}).chatter;
+  REQUIRE(chatter.size() == 1);
+  CHECK(chatter[0].range.from == Approx(fold).margin(2e-3));
+  CHECK(chatter[0].range.kept_below == Approx(fold).margin(2e-2));
 
   // Chaos: the run's lowest and highest value.
   const NonlinearSweep chaos = sweep_nonlinear(

@@ -4,6 +4,7 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/strength/class_judgement.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -322,8 +323,99 @@ TEST_CASE("The largest utilisation is followed to its top where the limit falls 
   CHECK(used(s.exceeded[0].from) == Approx(top / largest).epsilon(1e-6));
   CHECK(used(s.exceeded[0].to) == Approx(top / largest).epsilon(1e-6));
   CHECK(s.exceeded[0].worst == s.utilisation);
-  // The sweep alone has it at its speeds and at the peak of the torque only.
-  CHECK(judge_sweep(sweep, strength).verdict() == ClassJudgement::Verdict::within);
+  // Its speeds and the peak of the torque alone do not show it.
+  LinearSweep alone = sweep;
+  alone.points.clear();
+  CHECK(judge_sweep(alone, strength).verdict() == ClassJudgement::Verdict::within);
+}
+
+TEST_CASE("All resonances below the end of the rule are judged, however many larger ones lie above",
+          "[strength]") {
+  // Two discs of 1 kg m^2 and a shaft, excited by orders 0.5 to 12. The rule ends at 315 rpm, and the 12 orders that resonate
+  // above it have the larger torques.
+  constexpr double k = 50e3, c = 2.0, mu = 0.5;
+  constexpr int orders = 24, angles = 7200;
+  std::vector<Harmonic> harmonics;
+  LinearSweepOptions options;
+  for (int i = 1; i <= orders; ++i) {
+    harmonics.push_back({0.5 * i, 400.0 / i, 0.0});
+    options.orders.push_back(0.5 * i);
+  }
+  Model m("train");
+  m.add_node("a");
+  m.add_node("b");
+  m.set_reference("a", constant_speed(rpm(600.0)));
+  m.add<Inertia>("J_a", {"a"}, {.inertia = 1.0});
+  m.add<Inertia>("J_b", {"b"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {"a", "b"}, {.stiffness = k, .damping = c});
+  m.add<EngineOrderTorque>("gas", {"a"}, {.harmonics = harmonics, .twist_feedback = false});
+  const System system = m.build();
+  Strength strength;
+  strength.sections = {shaft_of(0.07)};
+  strength.sections[0].tensile_strength = 600e6, strength.sections[0].shape_factor = 0.5;
+  strength.rated_speed = rpm(300.0);
+  // Of the closed form of each order, sampled over the cycle of two revolutions.
+  std::vector<std::complex<double>> turns;
+  for (int j = 0; j < angles; ++j) turns.push_back(std::polar(1.0, 2.0 * rpm(30.0) * j * 2.0 / angles));
+  const auto used = [&](double w) {
+    std::vector<double> sum(angles, 0.0);
+    for (int i = 1; i <= orders; ++i) {
+      const double W = 0.5 * i * w;
+      const std::complex<double> z(k, W * c), torque = 400.0 / i * z * mu / (z - mu * W * W);
+      for (int j = 0; j < angles; ++j)
+        sum[static_cast<std::size_t>(j)] +=
+            std::real(torque * turns[static_cast<std::size_t>(i * j % angles)]);
+    }
+    const auto [low, high] = std::minmax_element(sum.begin(), sum.end());
+    return 0.5 * (*high - *low) / torque_limit(strength.sections[0], w / strength.rated_speed).continuous;
+  };
+  std::vector<SectionJudgement> found;
+  for (const double step : {45.0, 15.0}) {
+    options.speeds.clear();
+    for (double n = 150.0; n <= 2400.0; n += step) options.speeds.push_back(rpm(n));
+    const LinearSweep sweep = sweep_linear(system, options);
+    found.push_back(judge_sweep(sweep, strength, sweep_between(system, options)).sections.front());
+  }
+  double largest = 0.0;
+  for (double n = 303.0; n < 307.0; n += 0.05) largest = std::max(largest, used(rpm(n)));
+  CHECK(found[0].utilisation == Approx(largest).epsilon(1e-3));
+  CHECK(found[1].utilisation == Approx(found[0].utilisation).epsilon(1e-9));
+  REQUIRE(found[0].exceeded.size() >= 3);
+  REQUIRE(found[1].exceeded.size() == found[0].exceeded.size());
+  for (std::size_t i = 0; i < found[0].exceeded.size(); ++i) {
+    const ExceededRange &range = found[0].exceeded[i], &fine = found[1].exceeded[i];
+    CHECK(used(range.from) == Approx(1.0).epsilon(1e-4));
+    CHECK(used(range.to) == Approx(1.0).epsilon(1e-4));
+    CHECK(fine.from == Approx(range.from).epsilon(1e-6));
+    CHECK(fine.to == Approx(range.to).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("A section that does not vibrate uses nothing of its limit", "[strength]") {
+  LinearSweep still = triangle();
+  for (Vector* values : {&still.sections[0].maximum, &still.sections[0].minimum}) values->setZero();
+  still.peaks.clear();
+  Strength strength;
+  strength.sections = {shaft_of(0.05)};
+  strength.sections[0].permissible_torque = 500.0;
+  const ClassJudgement found = judge_sweep(still, strength);
+  CHECK(found.sections[0].judged());
+  CHECK(found.sections[0].utilisation == 0.0);
+  CHECK(found.sections[0].rule == "permissible torque");
+  CHECK(found.not_judged == std::vector<std::string>{"mesh.force_N"});
+}
+
+TEST_CASE("A limit while a range is passed is not below that in continuous running", "[strength]") {
+  Strength strength;
+  strength.sections = {shaft_of(0.05)};
+  strength.sections[0].permissible_torque = 500.0, strength.sections[0].transient_torque = 400.0;
+  strength.sections[0].permissible_stress = 30e6, strength.sections[0].transient_stress = 30e6;
+  const std::vector<Finding> findings = check_strength(strength);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].parameter == "transient_torque");
+  CHECK(findings[0].value == "400");
+  CHECK(findings[0].unit == "N m");
+  CHECK(findings[0].range.find("500 N m") != std::string::npos);
 }
 
 TEST_CASE("Faults of strength data are listed at once", "[strength]") {
