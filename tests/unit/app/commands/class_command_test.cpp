@@ -213,12 +213,12 @@ TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fi
       CHECK(worst > 0.0);
       CHECK(one.at("sections")[0].at("half_range_Nm")[i].get<double>() == Approx(worst).epsilon(1e-12));
     }
-    // The limit of 28 N m is met between two speeds of the grid, by the points of the curve between them.
+    // The limit of 28 N m is met between two speeds of the grid, in the normal case at a point of the curve between them.
     const nlohmann::json& range = one.at("sections")[0].at("exceeded").at(0);
     CHECK(range.at("kept_below_rpm").is_null());
     CHECK(range.at("to_rpm").get<double>() > (c == 0 ? 1900.0 : 2000.0));
     CHECK(range.at("to_rpm").get<double>() < range.at("kept_above_rpm").get<double>());
-    CHECK(range.at("kept_above_rpm").get<double>() < (c == 0 ? 2000.0 : 2100.0));
+    CHECK(range.at("kept_above_rpm").get<double>() < (c == 0 ? 1999.0 : 2101.0));
     // Only with little torque the mesh's force swings beyond its mean.
     CHECK(one.at("chatter").empty() == (c == 0));
   }

@@ -331,7 +331,7 @@ TEST_CASE("The largest utilisation is followed to its top where the limit falls 
 
 TEST_CASE("All resonances below the end of the rule are judged, however many larger ones lie above",
           "[strength]") {
-  // Two discs of 1 kg m^2 and a shaft, excited by orders 0.5 to 12. The rule ends at 315 rpm, and the 12 orders that resonate
+  // Two discs of 1 kg m^2 and a shaft, excited by orders 0.5 to 12. The rule ends at 315 rpm, and the 17 orders that resonate
   // above it have the larger torques.
   constexpr double k = 50e3, c = 2.0, mu = 0.5;
   constexpr int orders = 24, angles = 7200;
@@ -351,7 +351,7 @@ TEST_CASE("All resonances below the end of the rule are judged, however many lar
   m.add<EngineOrderTorque>("gas", {"a"}, {.harmonics = harmonics, .twist_feedback = false});
   const System system = m.build();
   Strength strength;
-  strength.sections = {shaft_of(0.07)};
+  strength.sections = {shaft_of(0.06)};
   strength.sections[0].tensile_strength = 600e6, strength.sections[0].shape_factor = 0.5;
   strength.rated_speed = rpm(300.0);
   // Of the closed form of each order, sampled over the cycle of two revolutions.
@@ -377,15 +377,18 @@ TEST_CASE("All resonances below the end of the rule are judged, however many lar
     found.push_back(judge_sweep(sweep, strength, sweep_between(system, options)).sections.front());
   }
   double largest = 0.0;
-  for (double n = 303.0; n < 307.0; n += 0.05) largest = std::max(largest, used(rpm(n)));
+  for (double n = 300.0; n < 304.0; n += 0.05) largest = std::max(largest, used(rpm(n)));
   CHECK(found[0].utilisation == Approx(largest).epsilon(1e-3));
   CHECK(found[1].utilisation == Approx(found[0].utilisation).epsilon(1e-9));
   REQUIRE(found[0].exceeded.size() >= 3);
   REQUIRE(found[1].exceeded.size() == found[0].exceeded.size());
   for (std::size_t i = 0; i < found[0].exceeded.size(); ++i) {
     const ExceededRange &range = found[0].exceeded[i], &fine = found[1].exceeded[i];
-    CHECK(used(range.from) == Approx(1.0).epsilon(1e-4));
-    CHECK(used(range.to) == Approx(1.0).epsilon(1e-4));
+    CHECK(used(range.from) == Approx(1.0).epsilon(3e-4));
+    if (range.open_to)
+      CHECK(to_rpm(range.to) == Approx(315.0));
+    else
+      CHECK(used(range.to) == Approx(1.0).epsilon(3e-4));
     CHECK(fine.from == Approx(range.from).epsilon(1e-6));
     CHECK(fine.to == Approx(range.to).epsilon(1e-6));
   }
