@@ -1,5 +1,4 @@
 #include <drev/core/channel.hpp>
-#include <drev/solvers/strength/section_strength.hpp>
 
 #include <filesystem>
 #include <iostream>
@@ -69,9 +68,8 @@ int export_command(const CommandLine& line) {
     if (line.options.count(option) > 0)
       throw ModelError({{kCommandLine, option, "", "", "is for --fmu, which is not there"}});
   const std::string text = export_model(*model.entry, model.parameters, model.model_case);
-  if (const auto& strength = model.model_case.strength)
-    if (const std::string left_out = left_out_of(*strength); !left_out.empty())
-      std::cerr << "drev: left out: " << left_out << "\n";
+  if (const std::string left_out = left_out_of(model.model_case); !left_out.empty())
+    std::cerr << "drev: left out: " << left_out << "\n";
   const std::optional<std::string> out = line.option("--out");
   if (!out) {
     print(line.json ? json_text({{"file", text}}) : text);

@@ -164,15 +164,13 @@ class CaseWriter {
     return text;
   }
 
-  /// [class]. The file has no parameters, by which alone its misfire case could be given: it is named as left out.
+  /// [class], without its misfire case: the file has no parameters.
   std::string write_strength() {
     if (!model_case_.strength) return {};
     const Strength& strength = *model_case_.strength;
     std::string text = "\n[class]\n";
     if (!std::isnan(strength.rated_speed))
       text += "rated_speed_rad_per_s = " + toml_number(strength.rated_speed) + "\n";
-    if (const std::string left_out = left_out_of(strength); !left_out.empty())
-      text += "# Left out: " + left_out + ".\n";
     text += "[class.sections]\n";
     for (SectionStrength section : strength.sections) {
       FieldKeys defaults(NodeKind::rotational, [](Fields& f) {
@@ -195,10 +193,10 @@ class CaseWriter {
 
 }  // namespace
 
-std::string left_out_of(const Strength& strength) {
-  if (strength.misfire.empty()) return {};
+std::string left_out_of(const ModelCase& model_case) {
+  if (!model_case.strength || model_case.strength->misfire.empty()) return {};
   std::string set;
-  for (const auto& [name, value] : strength.misfire)
+  for (const auto& [name, value] : model_case.strength->misfire)
     set += (set.empty() ? "" : ", ") + name + " = " + toml_number(value);
   return "class.misfire, { " + set +
          " }: a written file has no parameters, so that it is judged without a cylinder that misfires";

@@ -1,7 +1,6 @@
 #pragma once
 /// A model case as a model file: every number in SI with the digits that read back to the same double.
 #include <drev/models/model_case.hpp>
-#include <drev/solvers/strength/section_strength.hpp>
 
 #include <string>
 
@@ -10,7 +9,7 @@ namespace drev::app {
 /// Throws ModelError for what a file cannot hold: functions of one's own, elements of one's own.
 std::string export_model(const ModelEntry& entry, const Parameters& parameters, const ModelCase& model_case);
 
-/// What of the strength data a written file does not hold and why, as a clause: the misfire case. Empty: nothing is left out.
-std::string left_out_of(const Strength& strength);
+/// What a written file does not hold and why, as a clause: the misfire case of [class]. Empty: nothing is left out.
+std::string left_out_of(const ModelCase& model_case);
 
 }  // namespace drev::app
