@@ -14,6 +14,7 @@ constexpr int kMostKnots = 64;  // knots of one load in a step; more of them end
 // A knot so close to the step's ends need not end it, relative to the step.
 constexpr double kNearSpanEnd = 1e-6;
 constexpr int kMaxKnotNewton = 20;
+constexpr double kTurnRounding = 1e-13;  // of an angle, of a train at rest [rad] or relative to the angle
 constexpr double kAtTurn =
     0.5;  // part of a step in which an angle turns back beside a knot, to be tried next
 
@@ -198,7 +199,9 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   }
   // It bends at speeds, too, which no knot tells, so that the nodes have to follow it: a step ends at its knot.
   if (l.feedback && l.knots->piece_follows_speed()) {
-    if (knots) l.strongest = monotone ? first_knot_inside(l, end) : kAtTurn;
+    const double over = std::max(l.angle + high - l.piece.high, l.piece.low - l.angle - low);
+    if (knots && over > kTurnRounding * std::max(1.0, std::abs(l.angle)))
+      l.strongest = monotone ? first_knot_inside(l, end) : kAtTurn;
     l.kinked = l.unfinished = l.strongest < 1.0;
     if (l.kinked) places_.push_back(l.strongest);
     return differ_called(l, series, forces);

@@ -443,4 +443,5 @@ TEST_CASE("Pressure that follows the speed: of nodes beside the nominal motion t
            .peak_speed = {0.0, 10.0},
            .peak_pressure = {5e5, 5e5}};
   CHECK(run(0.1, 10.0, 1.0) == Approx(8.57352918493832).epsilon(1e-9));
+  CHECK(run(0.0, 0.0, 1.0) == 0.0);  // at rest on a knot
 }
