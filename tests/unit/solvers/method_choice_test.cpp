@@ -116,7 +116,7 @@ System driven_through(double shaft_stiffness, double damping = 2000.0) {
 
 }  // namespace
 
-TEST_CASE("Exact propagation stays for a run of hours whose modes all move") {
+TEST_CASE("Exact propagation stays for a run of hours whose modes all move", "[once]") {
   Model m = unit_oscillator();
   m.add_node("second", NodeKind::translational);
   m.add<Inertia>("second mass", {"second"}, {.inertia = 1.0});

@@ -105,7 +105,7 @@ TEST_CASE(
   CHECK(off.at("reduction").at("coordinates") == 82);
 }
 
-TEST_CASE("Option --reduce: a large model is reduced unasked, a method asked for runs the whole") {
+TEST_CASE("Option --reduce: a large model is reduced unasked, a method asked for runs the whole", "[once]") {
   const TemporaryFolder folder;
   const std::string file = (folder / "large.toml").string();
   std::ofstream(file) << train(1000, 1.0);

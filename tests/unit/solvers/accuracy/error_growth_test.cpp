@@ -28,7 +28,7 @@ TEST_CASE("Growth: a damped oscillator forgets, as exp(-c t / 2 m)") {
   CHECK(g.time_of(10.0) == HUGE_VAL);
 }
 
-TEST_CASE("Growth: none in linear trains, though they drift or have stiff shafts") {
+TEST_CASE("Growth: none in linear trains, though they drift or have stiff shafts", "[once]") {
   // Free, pushed by a sine from its zero: the pair drifts by some 10 rad a second and twists by 1e-2 rad. Held, with a shaft
   // 1e5 times as stiff as the others: 1e-9 of the largest angle in it would be 300 times as much of the rates.
   Model drifting("free pair");

@@ -449,7 +449,7 @@ void check_contacts(const System& system, const ExactOptions& options, double wi
   }
 }
 
-TEST_CASE("The largest force of each contact is that of the motion sampled every microsecond") {
+TEST_CASE("The largest force of each contact is that of the motion sampled every microsecond", "[once]") {
   std::vector<test::MeshLaw> laws = test::mesh_laws();
   laws.push_back({"Fourier series and a transmission error", [](GearMesh::Params& p) {
                     test::mesh_law("Fourier").change(p);
