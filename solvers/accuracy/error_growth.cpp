@@ -4,7 +4,6 @@
 #include <drev/solvers/run/observer.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

@@ -1,7 +1,6 @@
 #pragma once
 /// Student's t: the factor that makes an interval of a mean from few values.
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 namespace drev {

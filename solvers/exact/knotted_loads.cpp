@@ -15,8 +15,8 @@ constexpr int kMostKnots = 64;  // knots of one load in a step; more of them end
 constexpr double kNearSpanEnd = 1e-6;
 constexpr int kMaxKnotNewton = 20;
 constexpr double kTurnRounding = 1e-13;  // of an angle, of a train at rest [rad] or relative to the angle
-constexpr double kAtTurn =
-    0.5;  // part of a step in which an angle turns back beside a knot, to be tried next
+// Part of a step in which an angle turns back beside a knot, to be tried next.
+constexpr double kAtTurn = 0.5;
 
 struct Cubic {
   double value, slope;
