@@ -102,14 +102,14 @@ Eigen::MatrixXd CholeskyFactor::solve_lower_transposed(const Eigen::MatrixXd& b)
   return lower_.triangularView<Eigen::Lower>().transpose().solve(b);
 }
 
-Vector least_squares(const Eigen::MatrixXd& a, const Vector& b) {
+Vector least_squares(const Eigen::MatrixXd& a, const Vector& b, double tolerance) {
   Eigen::MatrixXd factored = a;
   const auto m = static_cast<int>(a.rows()), n = static_cast<int>(a.cols());
   const int ld = std::max(m, 1), ldb = std::max({m, n, 1}), one = 1;
   Vector x = Vector::Zero(ldb);
   x.head(m) = b;
   std::vector<int> pivots(static_cast<std::size_t>(n), 0);
-  const double tolerance = rank_tolerance(a);
+  if (tolerance == 0.0) tolerance = rank_tolerance(a);
   int rank = 0, info = 0;
   with_workspace([&](double* work, const int* lwork) {
     dgelsy_(&m, &n, &one, factored.data(), &ld, x.data(), &ldb, pivots.data(), &tolerance, &rank, work, lwork,

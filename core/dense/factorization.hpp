@@ -48,8 +48,9 @@ class CholeskyFactor {
 };
 
 /// The shortest x of those that make |A x - b| least, A of any shape and rank (complete orthogonal decomposition: Golub
-/// and Van Loan, Matrix Computations, 2013, section 5.4.7). Condition numbers above 1/(n eps) count as dependence.
-Vector least_squares(const Eigen::MatrixXd& a, const Vector& b);
+/// and Van Loan, Matrix Computations, 2013, section 5.4.7). Condition numbers above 1/tolerance count as dependence;
+/// tolerance 0: above 1/(n eps).
+Vector least_squares(const Eigen::MatrixXd& a, const Vector& b, double tolerance = 0.0);
 
 /// Orthonormal columns that span the x of A x = 0, by A' P = Q R with column pivoting; none: a matrix of no columns.
 /// Pivots below n eps of the largest count as zero.

@@ -2,9 +2,11 @@
 
 #include <drev/core/assembler.hpp>
 
-#include <Eigen/QR>
 #include <cmath>
+#include <complex>
 #include <vector>
+
+#include "core/dense/factorization.hpp"
 
 namespace drev {
 
@@ -78,11 +80,16 @@ Eigen::VectorXcd DampedPairs::residue(const Vector& damping, const Eigen::Vector
     for (Eigen::Index i = 0; i < x.cols(); ++i)
       n(i, j) = (x.col(i).transpose() * ((poles[i] + poles[j]) * of_mass + of_damping))(0, 0);
   }
-  // Two of the shapes may be the same one.
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXcd> inverse;
-  inverse.setThreshold(kSameShape);
-  inverse.compute(n);
-  return x * inverse.solve(x.transpose() * p);
+  // Two of the shapes may be the same one. Real and imaginary parts as unknowns: Eigen's decomposition of complex matrices
+  // alone takes as long to compile as half of this room.
+  const Eigen::Index k = x.cols();
+  Eigen::MatrixXd parts(2 * k, 2 * k);
+  parts << n.real(), -n.imag(), n.imag(), n.real();
+  const Eigen::VectorXcd force = x.transpose() * p;
+  Vector right(2 * k);
+  right << force.real(), force.imag();
+  const Vector y = least_squares(parts, right, kSameShape);
+  return x * (y.head(k) + Complex(0.0, 1.0) * y.tail(k));
 }
 
 }  // namespace drev

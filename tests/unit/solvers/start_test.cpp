@@ -9,10 +9,10 @@
 #include <drev/solvers/run/recorder.hpp>
 #include <drev/solvers/start.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <complex>
 
+#include "core/dense/eigenvalues.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -68,11 +68,11 @@ TEST_CASE(
     m.add<EngineOrderTorque>("load", {disc},
                              {.harmonics = {{.order = 1.0, .amplitude = 20.0}}, .twist_feedback = false});
     const System system = m.build();
-    Eigen::Matrix3d companion = Eigen::Matrix3d::Zero();
+    Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(3, 3);
     companion(1, 0) = companion(2, 1) = 1.0;
     companion.col(2) << -k_i / (inertia * lag), -k_p / (inertia * lag), -1.0 / lag;
     std::complex<double> root = -1e9;
-    for (const std::complex<double> s : companion.eigenvalues())
+    for (const std::complex<double> s : general_eigen(companion).values)
       if (s.real() > root.real()) root = s;
     CAPTURE(k_p, root);
     const FoundStart start = find_start(system, Start::periodic, {.duration = 1.0});

@@ -1,9 +1,10 @@
 // Linear complementarity problems by Lemke's method, and those of friction with gears, against every combination.
 // Covers: solvers/contact/linear_complementarity.hpp solvers/contact/friction_complementarity.hpp
 // solvers/modes/tied_system.hpp (through solve_modes in lossy_gear_test.cpp)
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <random>
 
+#include "core/dense/factorization.hpp"
 #include "solvers/contact/friction_complementarity.hpp"
 #include "solvers/contact/linear_complementarity.hpp"
 #include "tests/catch.hpp"
@@ -30,8 +31,8 @@ TEST_CASE("Lemke's method finds the one solution that trying every set of variab
       Eigen::VectorXd z = Eigen::VectorXd::Zero(n);
       if (!basic.empty()) {
         const Eigen::MatrixXd part = m(basic, basic);
-        const Eigen::VectorXd right = -q(basic), values = part.lu().solve(right);
-        z(basic) = values;
+        const Eigen::VectorXd right = -q(basic);
+        z(basic) = lu_solve(part, right);
       }
       if (z.minCoeff() < -1e-12 || (m * z + q).minCoeff() < -1e-10) continue;
       ++solutions;

@@ -2,9 +2,9 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 
-#include <Eigen/Dense>
 #include <cmath>
 
+#include "core/dense/eigenvalues.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -32,12 +32,12 @@ TEST_CASE("Exact propagation leaves a table's knot from rest on the side to whic
 
   // Modal superposition: z = sum phi (phi' f)/omega^2 (1 - cos omega t).
   const double ground = slopes[0] + slopes[1] + slopes[2];
-  const Eigen::Matrix2d k{{shaft, -shaft}, {-shaft, shaft + ground}}, mass{{flywheel, 0.0}, {0.0, crank}};
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> modes(k, mass);
+  const Eigen::MatrixXd k{{shaft, -shaft}, {-shaft, shaft + ground}}, mass{{flywheel, 0.0}, {0.0, crank}};
+  const SymmetricEigen modes = symmetric_eigen(k, mass);
   Eigen::Vector2d expected = Eigen::Vector2d::Zero();
   for (int i = 0; i < 2; ++i) {
-    const Eigen::Vector2d shape = modes.eigenvectors().col(i);
-    const double square = modes.eigenvalues()[i];
+    const Eigen::Vector2d shape = modes.vectors.col(i);
+    const double square = modes.values[i];
     expected += shape * shape[0] * torque / square * (1.0 - std::cos(std::sqrt(square) * end));
   }
   CHECK(state.z[0] == Approx(expected[0]).epsilon(1e-11));

@@ -1,10 +1,10 @@
 // Complex elimination, one frequency or eight at once, against dense solutions of the same matrices.
 #include "solvers/linear/complex_elimination.hpp"
 
-#include <Eigen/LU>
 #include <complex>
 #include <random>
 
+#include "core/dense/factorization.hpp"
 #include "solvers/linear/lane_elimination.hpp"
 #include "tests/catch.hpp"
 
@@ -60,7 +60,7 @@ void check_against_dense(const Matrices& a, Complex s, double tolerance) {
     b[i] = Complex(1.0 + static_cast<double>(i), -0.3 * static_cast<double>(i));
   Eigen::VectorXcd x = b;
   elimination.solve(x.data());
-  const Eigen::VectorXcd expected = a.at(s).fullPivLu().solve(b);
+  const Eigen::VectorXcd expected = lu_solve(a.at(s), b);
   CHECK((x - expected).norm() < tolerance * expected.norm());
 }
 
@@ -136,7 +136,7 @@ TEST_CASE("Sets of eight frequencies are solved as dense matrices are, a lost pi
           for (Eigen::Index i = 0; i < n; ++i) given[i] = b(i, set);
           Eigen::MatrixXcd matrix = m->at({0.0, w[s].v[lane]});
           matrix += Complex(0.0, factor) * m->at({0.0, 0.0});
-          const Eigen::VectorXcd x = matrix.partialPivLu().solve(given);
+          const Eigen::VectorXcd x = lu_solve(matrix, given);
           for (Eigen::Index i = 0; i < n; ++i)
             CHECK(std::abs(Complex(re[row(i, set)].v[lane], im[row(i, set)].v[lane]) - x[i]) <
                   1e-11 * x.norm());

@@ -7,10 +7,11 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 
+#include "core/dense/factorization.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -32,12 +33,11 @@ TEST_CASE("ARPACK finds the lowest eigenpairs of a chain") {
     k(i, i) = i + 1 < kMasses ? 2.0 : 1.0;
     if (i > 0) k(i, i - 1) = k(i - 1, i) = -1.0;
   }
-  const Eigen::LDLT<Eigen::MatrixXd> factor(k);
   ShiftInvertProblem problem;
   problem.size = kMasses;
   problem.count = kWanted;
   problem.solve = [&](const double* b, double* x) {
-    Eigen::Map<Vector>(x, kMasses) = factor.solve(Eigen::Map<const Vector>(b, kMasses));
+    Eigen::Map<Vector>(x, kMasses) = ldlt_solve(k, Vector(Eigen::Map<const Vector>(b, kMasses)));
   };
   const ShiftInvertResult found = arpack_shift_invert(problem);
   REQUIRE(found.status == ArpackStatus::success);

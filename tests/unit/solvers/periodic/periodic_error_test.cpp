@@ -54,7 +54,8 @@ std::optional<State> closed_orbit(const System& system, State start, double peri
       other = after(system, other, period);
       slope.col(k) << (other.z[0] - end.z[0]) / d, (other.v[0] - end.v[0]) / d;
     }
-    const Eigen::Vector2d step = (Eigen::Matrix2d::Identity() - slope).partialPivLu().solve(open);
+    const Eigen::Matrix2d equations = Eigen::Matrix2d::Identity() - slope;
+    const Eigen::Vector2d step = equations.inverse() * open;
     start.z[0] += step[0];
     start.v[0] += step[1];
   }

@@ -4,10 +4,11 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <complex>
 
+#include "core/dense/eigenvalues.hpp"
+#include "core/dense/factorization.hpp"
 #include "tests/catch.hpp"
 
 using namespace drev;
@@ -216,12 +217,11 @@ TEST_CASE("A critical is in the section that its mode moves, not in the one with
 
   // The mode's residue: C = beta K, so that mode n of the undamped train with omega has lambda^2 + beta omega^2 lambda +
   // omega^2 = 0, and phi phi' p / (lambda - conj lambda) at the pole.
-  Eigen::Matrix2d mass = Eigen::Vector2d(first, second).asDiagonal(), stiffness;
-  stiffness << soft + stiff, -stiff, -stiff, stiff;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> modes(stiffness, mass);
-  const double omega = std::sqrt(modes.eigenvalues()[0]), decay = 0.5 * beta * omega * omega,
+  const Eigen::MatrixXd mass{{first, 0.0}, {0.0, second}}, stiffness{{soft + stiff, -stiff}, {-stiff, stiff}};
+  const SymmetricEigen modes = symmetric_eigen(stiffness, mass);
+  const double omega = std::sqrt(modes.values[0]), decay = 0.5 * beta * omega * omega,
                damped = std::sqrt(omega * omega - decay * decay);
-  const Eigen::Vector2d phi = modes.eigenvectors().col(0);
+  const Eigen::Vector2d phi = modes.vectors.col(0);
   const double force = phi.dot(Eigen::Vector2d(torque, -(torque - rest)));
   const double own =
       std::abs(soft * (1.0 + beta * Complex(0.0, damped)) * phi[0] * force / (2.0 * damped)) / decay;
@@ -268,15 +268,15 @@ TEST_CASE("A mode's own part is its residue, whatever modes lie near", "[sweep_p
         const LinearSweep sweep = sweep_linear(m.build(), {.speeds = {1.0, 10.0, 40.0}, .orders = {1.0}});
         Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(10, 10);
         companion.topRightCorner(5, 5).setIdentity();
-        companion.bottomLeftCorner(5, 5) = -M.inverse() * K;
-        companion.bottomRightCorner(5, 5) = -M.inverse() * C;
-        const Eigen::EigenSolver<Eigen::MatrixXd> modes(companion);
+        companion.bottomLeftCorner(5, 5) = -lu_solve(M, K);
+        companion.bottomRightCorner(5, 5) = -lu_solve(M, C);
+        const GeneralEigen modes = general_eigen(companion);
         CHECK(sweep.criticals.size() >= 3);
         for (const SweepCritical& critical : sweep.criticals) {
           Eigen::Index nearest = 0;
-          (modes.eigenvalues().array().imag() - 2.0 * kPi * critical.frequency_Hz).abs().minCoeff(&nearest);
-          const Complex lambda = modes.eigenvalues()[nearest], iw(0.0, lambda.imag());
-          const Eigen::VectorXcd x = modes.eigenvectors().col(nearest).head(5);
+          (modes.values.array().imag() - 2.0 * kPi * critical.frequency_Hz).abs().minCoeff(&nearest);
+          const Complex lambda = modes.values[nearest], iw(0.0, lambda.imag());
+          const Eigen::VectorXcd x = modes.vectors.col(nearest).head(5);
           const Complex per = (x.transpose() * (2.0 * lambda * M + C) * x)(0, 0);
           const Eigen::VectorXcd z = x * (x[0] * kTorque / per / std::abs(lambda.real()));
           double most = std::abs((spring[0] + iw * damper[0]) * (z[1] - z[0]));
