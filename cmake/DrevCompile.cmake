@@ -28,9 +28,14 @@ if(DREV_SANITIZE)
   add_link_options(-fsanitize=${DREV_SANITIZE})
 endif()
 
-# pip install has someone waiting: no warnings, and g++ clears away no memory before it has used 1 GiB.
-if(SKBUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  add_compile_options("SHELL:--param ggc-min-heapsize=1048576")
+# g++ clears away no memory before it has used 1 GiB, where that much is there for each processor: a tenth of the time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  cmake_host_system_information(RESULT memory QUERY TOTAL_PHYSICAL_MEMORY)  # MiB
+  cmake_host_system_information(RESULT processors QUERY NUMBER_OF_LOGICAL_CORES)
+  math(EXPR each "${memory} / ${processors}")
+  if(each GREATER 3000)
+    add_compile_options("SHELL:--param ggc-min-heapsize=1048576")
+  endif()
 endif()
 
 # "text" + std::string makes g++ 12 and 13 warn of overlaps and sizes that cannot occur (GCC bug 105651).
@@ -51,7 +56,7 @@ set(DREV_COLD drev_core)
 # Language level and warnings; further arguments: what to precompile, or REUSE_FROM <target>.
 function(drev_compile target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  if(NOT SKBUILD)
+  if(NOT SKBUILD)  # pip install has someone waiting.
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion ${DREV_NO_WARNINGS}
       $<$<BOOL:${DREV_WARNINGS_AS_ERRORS}>:-Werror>)
   endif()

@@ -106,7 +106,7 @@ Json values_object(const ParameterValues& values) {
   Json object = Json::object();
   for (const auto& [name, text] : values) {
     double value = 0.0;
-    object[name] = read_number(text, value) ? number(value) : Json(text);
+    object[name] = drev::read_number(text, value) ? number(value) : Json(text);
   }
   return object;
 }

@@ -21,7 +21,7 @@ extern "C" [[gnu::noinline]] void measured(const std::function<bool()>& run, boo
 
 namespace {
 
-constexpr double kDuration = 0.02, kMeshDuration = 0.15, kLongDuration = 1.0;  // s
+constexpr double kDuration = 0.02, kMeshDuration = 0.05, kLongDuration = 1.0;  // s
 
 ModelCase camshaft_case(const char* drive) {
   Parameters parameters("camshaft", camshaft_entry().parameters);
