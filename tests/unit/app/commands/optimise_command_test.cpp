@@ -241,3 +241,21 @@ TEST_CASE("The text of an optimisation keeps long figures apart from their value
   CHECK(found.exit_code == 0);
   CHECK(contains(found.out, "least shaft.torque_Nm.max  "));
 }
+
+TEST_CASE("A search for the largest value at a bound tries the bound, and no value beyond it") {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "m.toml").string();
+  std::ofstream(file)
+      << "format = 1\n[parameters]\nk_Nm_per_rad = { default = 100, min = 1, max = 166.66666666666666 }\n"
+         "[nodes]\nwall = { hold = true }\ndisc = { initial_speed_rad_per_s = 1 }\n[elements]\n"
+         "J = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 1 }\n"
+         "s = { type = \"shaft_spring\", nodes = [\"wall\", \"disc\"], "
+         "stiffness_Nm_per_rad = \"k_Nm_per_rad\" }\n[run]\nduration_s = 0.5\n";
+  const Words words{
+      "optimise",      file,         "--vary", "k_Nm_per_rad=uniform(100,166.66666666666666)", "--maximise",
+      "max_torque_Nm", "--variants", "40"};
+  const auto text = drev_command(words);
+  INFO(text.out << text.err);
+  CHECK(contains(text.out, "k_Nm_per_rad=166.66666666666666"));
+  CHECK_FALSE(contains(text.out, "failed"));
+}
