@@ -1,5 +1,6 @@
 """A model and the computations with it: the commands of drev, one method each."""
 import contextlib
+import copy
 import json
 import os
 import re
@@ -99,8 +100,7 @@ class ModelCase:
 
     def set(self, **parameters):
         """The same model with other values of the named parameters (see `parameters`)."""
-        case = type(self).__new__(type(self))
-        case.__dict__.update(self.__dict__)
+        case = copy.copy(self)
         case._parameters = {**self._parameters, **parameters}
         return case
 
