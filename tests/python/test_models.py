@@ -216,6 +216,13 @@ def test_models_that_drev_has(root):
     assert long.run().t_end == 5.0
 
 
+def test_a_node_held_by_a_misspelt_name_is_a_fault():
+    m = two_masses()
+    m.hold("moter")
+    with pytest.raises(drev.ModelError, match="nodes.moter, is held without effect: no element is at this node"):
+        m.check()
+
+
 def test_a_model_set_to_other_values_is_one_of_its_own():
     m = two_masses()
     m.set_run(duration_s=0.1)
