@@ -1,5 +1,6 @@
 #include <drev/advice/advise.hpp>
 #include <drev/core/units.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -34,16 +35,25 @@ double turn_time(const ModelCase& model_case, const System& system) {
   return speed > 0.0 ? model_case.static_turn / speed : 0.0;
 }
 
+/// From when on the figures of a run from this start count, as the model case has it [s].
+double settled_from(const ModelCase& model_case, const System& in_start) {
+  if (!model_case.settle) return 0.0;
+  if (model_case.settle->time) return *model_case.settle->time;
+  if (model_case.start == Start::periodic) return 0.0;
+  const double time = settling_time(in_start).time;
+  return time + turn_time(model_case, in_start) < model_case.duration ? time : 0.0;
+}
+
 class Ladder {
  public:
   Ladder(const ModelCase& model_case, const AdviseOptions& options)
       : model_case_(model_case),
         options_(options),
-        full_(model_case.model.build()),
-        evidence_(full_),
-        figure_(figure_options(model_case, full_, options)) {
+        figure_(figure_options(model_case, model_case.model.build(), options)),
+        full_(started(model_case.model.build(), figure_)),
+        evidence_(full_) {
+    figure_.from = std::max(figure_.from, settled_from(model_case, full_));
     figure_.watch = evidence_.channels();
-    figure_.pause = options.pause;
   }
 
   Advice run() {
@@ -285,9 +295,9 @@ class Ladder {
 
   const ModelCase& model_case_;
   const AdviseOptions& options_;
-  System full_;
-  Evidence evidence_;
   FigureOptions figure_;
+  System full_;  // in its start
+  Evidence evidence_;
   Advice advice_;
   Rung full_rung_{.name = {}, .leaves_out = {}, .recipe = nullptr};
   FigureEstimate full_estimate_;
@@ -302,7 +312,9 @@ FigureOptions figure_options(const ModelCase& model_case, const System& system,
   check.within("within", options.within, options.kWithin.low, options.kWithin.high, "");
   FigureOptions figure{.t_end = model_case.duration,
                        .step = std::min(model_case.default_step, model_case.duration),
-                       .accuracy = kAccuracy * options.within};
+                       .start = model_case.start,
+                       .accuracy = kAccuracy * options.within,
+                       .pause = options.pause};
   std::string text = options.figure;
   if (text.starts_with("steady ")) {
     text = text.substr(7);

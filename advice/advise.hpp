@@ -11,7 +11,8 @@
 ///
 /// The full model is run: advice pays where many runs follow. So that none holds by chance, a level holds
 /// only if one that leaves out less does, and a discretisation only if the next finer one does. What holds
-/// does so for this model case and this figure (docs/fidelity.md).
+/// does so for this model case and this figure (docs/fidelity.md). Every model is run from the model case's start, and
+/// its figure counts from when the case has settled.
 #include <drev/core/range.hpp>
 #include <drev/models/model_case.hpp>
 
@@ -59,10 +60,12 @@ struct Advice {
   const Rung& full() const { return rungs.back(); }
 };
 
-/// What the figure counts, in the names of the model case's model. Throws ModelError for one that cannot be.
+/// What the figure counts, in the names of the model case's model; advise() alone leaves out what settles. Throws
+/// ModelError for one that cannot be.
 FigureOptions figure_options(const ModelCase& model_case, const System& system, const AdviseOptions& options);
 
-/// Throws ModelError for a figure or limit that cannot be, SolverError where the full model cannot be run.
+/// Throws ModelError for a figure or limit that cannot be, SolverError where the full model cannot be run or has no
+/// start.
 Advice advise(const ModelCase& model_case, const AdviseOptions& options);
 
 }  // namespace drev

@@ -11,6 +11,7 @@
 #include <drev/solvers/method.hpp>
 #include <drev/solvers/run/estimate.hpp>
 #include <drev/solvers/run/peak.hpp>
+#include <drev/solvers/start.hpp>
 
 #include <functional>
 #include <limits>
@@ -25,6 +26,7 @@ struct FigureOptions {
   std::vector<std::string> channels = {};
   double from = 0.0, t_end = 0.0;  ///< s, the part of the run that counts
   double step = 0.0;               ///< s, for models that need constant steps
+  Start start = Start::rest;       ///< of the system that a recipe builds
   double accuracy = 1e-3;          ///< relative, aimed at
   /// Processor time of one run beyond which there is no estimate [s].
   double most_seconds = std::numeric_limits<double>::infinity();

@@ -23,7 +23,24 @@ Estimate steady_peak(const System& system, const FigureOptions& figure, double t
 
 }  // namespace
 
-System Recipe::build() const { return reduction ? reduce(model.build(), *reduction).system : model.build(); }
+System started(System system, const FigureOptions& figure) {
+  if (figure.start == Start::rest) return system;
+  FoundStart found = find_start(system, figure.start,
+                                {.duration = figure.t_end,
+                                 .method = choose_method(system, figure.t_end, figure.step).method,
+                                 .progress = [&](double) {
+                                   if (figure.pause) figure.pause();
+                                   return true;
+                                 }});
+  // A figure that begins anywhere on a motion that does not repeat is none of the model.
+  if (const std::string why = found.unsettled(); !why.empty()) throw SolverError(system.name() + ": " + why);
+  return std::move(found.system);
+}
+
+System Recipe::build() const {
+  System system = turns ? model.build() : started(model.build(), figure);
+  return reduction ? reduce(system, *reduction).system : system;
+}
 
 double Recipe::run() const {
   const System system = build();

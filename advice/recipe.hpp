@@ -8,6 +8,10 @@
 
 namespace drev {
 
+/// The system in the figure's start, by a run's rules. Throws SolverError where there is none, or a periodic one is no
+/// steady state.
+System started(System system, const FigureOptions& figure);
+
 struct Recipe {
   Model model;
   FigureOptions figure;  ///< its channels have this model's names
@@ -17,6 +21,7 @@ struct Recipe {
   /// a run.
   std::optional<double> turns = {};
 
+  /// The system, in the figure's start; for turns in the model's initial conditions.
   System build() const;
   /// The figure, from the description on. Throws SolverError where it cannot be found.
   double run() const;

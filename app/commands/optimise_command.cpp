@@ -125,6 +125,13 @@ std::vector<std::size_t> failed_in(const Optimum& optimum) {
   return failed;
 }
 
+/// How many of the variants that have the figure have a warning.
+std::size_t warned_in(const Optimum& optimum) {
+  return static_cast<std::size_t>(
+      std::count_if(optimum.order.begin(), optimum.order.end(),
+                    [&](std::size_t i) { return !optimum.tried[i].reason.empty(); }));
+}
+
 Json optimum_object(const OptimumRequest& request, const Optimum& optimum) {
   const FigureColumn& figure = request.study.figures()[request.options.figure];
   Json object{{"$schema", "urn:drev:optimum:1"}, {"kind", "optimum"}, {"drev", DREV_VERSION}};
@@ -136,13 +143,15 @@ Json optimum_object(const OptimumRequest& request, const Optimum& optimum) {
   object["goal"] = request.options.largest ? "largest" : "least";
   object["variants"] = optimum.tried.size();
   object["without_figure"] = optimum.tried.size() - optimum.order.size();
+  object["with_warning"] = warned_in(optimum);
   object["all_combinations"] = optimum.all;
   object["best"] = Json::array();
   for (std::size_t i = 0; i < std::min(kTold, optimum.order.size()); ++i) {
     const TriedVariant& tried = optimum.tried[optimum.order[i]];
     object["best"].push_back({{"value", number(tried.figure)},
                               {"variant", optimum.order[i]},
-                              {"varied", values_object(tried.values)}});
+                              {"varied", values_object(tried.values)},
+                              {"warning", text_or_null(tried.reason)}});
   }
   object["failures"] = Json::array();
   const std::vector<std::size_t> failed = failed_in(optimum);
@@ -171,8 +180,13 @@ std::string failures_text(const Optimum& optimum) {
 }
 
 /// Whether the best variant is certain to be the best of all.
-std::string certainty_text(const Optimum& optimum) {
-  if (!optimum.all) return "no: a search proves nothing; see whether another --seed finds less";
+std::string certainty_text(const Optimum& optimum, bool largest) {
+  if (!optimum.all)
+    return std::string("no: a search proves nothing; see whether another --seed finds ") +
+           (largest ? "more" : "less");
+  if (const std::size_t warned = warned_in(optimum); warned > 0)
+    return "no: " + std::to_string(warned) + " of the " + std::to_string(optimum.tried.size()) +
+           " combinations have a warning, marked with *";
   if (optimum.order.size() == optimum.tried.size()) return "yes: every combination was computed";
   return "among the " + std::to_string(optimum.order.size()) + " of " + std::to_string(optimum.tried.size()) +
          " combinations that have a figure; nothing is known of the rest";
@@ -185,11 +199,14 @@ std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) 
   std::string suffix = "_" + figure.unit;
   std::erase(suffix, ' ');
   const std::string in_head = figure.name.ends_with(suffix) ? "" : unit;
-  std::string text =
-      labelled("variants", std::to_string(optimum.tried.size()) + " of " + request.study.request().words +
-                               (optimum.all ? ", all combinations"
-                                            : ", by a Latin hypercube and a search from its best")) +
-      labelled("method", to_text(request.study.request().method));
+  std::string text;
+  if (!optimum.order.empty())
+    if (const TriedVariant& best = optimum.tried[optimum.order[0]]; !best.reason.empty())
+      text += "*** WARNING: " + values_text(best.values) + ": " + best.reason + "\n\n";
+  text += labelled("variants", std::to_string(optimum.tried.size()) + " of " + request.study.request().words +
+                                   (optimum.all ? ", all combinations"
+                                                : ", by a Latin hypercube and a search from its best")) +
+          labelled("method", to_text(request.study.request().method));
   const std::size_t failed = failed_in(optimum).size(),
                     none = optimum.tried.size() - optimum.order.size() - failed;
   if (failed > 0) text += labelled("failed", std::to_string(failed) + " of them") + failures_text(optimum);
@@ -199,14 +216,16 @@ std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) 
   const TriedVariant& best = optimum.tried[optimum.order[0]];
   text += labelled((request.options.largest ? "largest " : "least ") + figure.name,
                    digits(best.figure, 8) + unit) +
-          labelled("at", values_text(best.values)) + labelled("certain", certainty_text(optimum)) +
-          "\nThe best variants\n";
+          labelled("at", values_text(best.values)) +
+          labelled("certain", certainty_text(optimum, request.options.largest)) + "\nThe best variants\n";
   std::vector<std::vector<std::string>> rows{{"parameters", figure.name + in_head}};
   for (std::size_t i = 0; i < std::min(kTold, optimum.order.size()); ++i) {
     const TriedVariant& tried = optimum.tried[optimum.order[i]];
-    rows.push_back({values_text(tried.values), digits(tried.figure, 8)});
+    rows.push_back({values_text(tried.values) + (tried.reason.empty() ? "" : " *"), digits(tried.figure, 8)});
   }
-  return text + columns_text(rows);
+  text += columns_text(rows);
+  if (warned_in(optimum) > 0) text += "* with a warning, which tried.csv of --out DIR has\n";
+  return text;
 }
 
 /// A row a variant, in the order of computation.

@@ -9,12 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "app/model_file/field_reader.hpp"
 #include "app/model_file/key_finder.hpp"
 #include "app/model_file/node_fields.hpp"
 #include "app/model_file/part.hpp"
+#include "app/model_file/refused_element.hpp"
 #include "app/model_file/run_section.hpp"
 #include "app/model_file/strength_section.hpp"
 
@@ -26,33 +26,6 @@ constexpr int kMostRepeats = 10000;
 constexpr std::size_t kMostParts = 300000;  // nodes and elements
 // Names are compared with so many at most: suggestions take time.
 constexpr std::size_t kMostCompared = 2000;
-
-/// Stands for an element that has been refused, at its nodes: what they may lack because of it is then no fault of
-/// theirs. Of the element itself, what was read of it is still checked.
-class RefusedElement final : public Element {
- public:
-  static constexpr const char* kRefused = "refused";  ///< its own finding, which has been said already
-  /// What was read, null: nothing; whether its parameters, and its number of nodes, are those of the file.
-  RefusedElement(std::shared_ptr<const Element> read, bool parameters_read, bool nodes_read)
-      : read_(std::move(read)),
-        parameters_read_(read_ && parameters_read),
-        nodes_read_(read_ && nodes_read) {}
-
-  std::string_view type() const override { return read_ ? read_->type() : "element"; }
-  int min_nodes() const override { return nodes_read_ ? read_->min_nodes() : 0; }
-  int max_nodes() const override {
-    return nodes_read_ ? read_->max_nodes() : std::numeric_limits<int>::max();
-  }
-  void check(ParameterCheck& check) const override {
-    if (parameters_read_) read_->check(check);
-    check.fail(kRefused, "", "", "");
-  }
-  void describe(int /*nodes*/, Terms& /*terms*/) const override {}
-
- private:
-  std::shared_ptr<const Element> read_;
-  bool parameters_read_, nodes_read_;
-};
 
 const std::string kStandIn = "refused part ";  // begins the names of those that have none of their own
 
@@ -157,6 +130,7 @@ class CaseReader {
     const bool all_read = entries_.all_read() && doc_.whole;
     if (!all_read && nodes_.empty()) return {};
     if (!all_read) stand_in({"?"});
+    check_given_motions();
     std::optional<System> system = build_whole();
     ModelCase model_case{.model = model_, .note = doc_.note};
     // Channels and sections are looked up in what is sound.
@@ -340,6 +314,21 @@ class CaseReader {
   void stand_in(const std::vector<NodeRef>& nodes) {
     model_.add(kStandIn + std::to_string(++stand_ins_), nodes,
                std::make_shared<const RefusedElement>(nullptr, false, false));
+  }
+
+  /// A node whose motion is given, and that no element is at, has no effect unless it is the reference shaft: its name is
+  /// mistaken.
+  void check_given_motions() {
+    std::set<std::string> used;
+    for (const ElementInstance& instance : model_.element_instances())
+      for (const NodeRef& node : instance.nodes) used.insert(model_.name_of(node));
+    for (const auto& [node, motion] : model_.references()) used.insert(model_.name_of(node));
+    if (used.contains("?")) return;
+    for (const Model::Prescription& given : model_.prescriptions())
+      if (const std::string& name = model_.name_of(given.node); !given.omega && !used.contains(name))
+        refuse(nodes_.at(name).at, "nodes." + name,
+               std::string(given.deviation ? "has a given motion" : "is held") +
+                   " without effect: no element is at this node");
   }
 
   /// Nothing, and findings, where something is wrong with the train.

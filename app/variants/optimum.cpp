@@ -120,7 +120,7 @@ class OptimumSearch {
     ParameterValues values;
     for (const Varied& v : study_.plan().varied()) {
       if (v.kind == Varied::Kind::uniform) {
-        values.emplace_back(v.name, short_digits(v.first + (v.second - v.first) * *u++, 12));
+        values.emplace_back(v.name, v.between(*u++));
       } else if (v.kind == Varied::Kind::values) {
         const auto count = static_cast<double>(v.count());
         values.emplace_back(v.name, v.value(static_cast<std::uint64_t>(std::min(count - 1.0, *u++ * count))));

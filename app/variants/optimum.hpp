@@ -40,7 +40,7 @@ struct OptimumOptions {
 struct TriedVariant {
   ParameterValues values = {};
   VariantStatus status = VariantStatus::failed;
-  std::string reason = {};                                   ///< why it failed; empty: it did not
+  std::string reason = {};  ///< why it failed, or what its run warns of; empty: neither
   double figure = std::numeric_limits<double>::quiet_NaN();  ///< not finite: the variant has none
 };
 

@@ -186,9 +186,8 @@ ParameterValues VariantPlan::parameters(std::uint64_t i) const {
     if (const std::uint64_t count = v.count())
       text = v.value(std::min(count - 1, static_cast<std::uint64_t>(u[d] * static_cast<double>(count))));
     else
-      text = short_digits(v.kind == Varied::Kind::uniform ? v.first + (v.second - v.first) * u[d]
-                                                          : v.first + v.second * normal_quantile(u[d]),
-                          12);
+      text = v.kind == Varied::Kind::uniform ? v.between(u[d])
+                                             : short_digits(v.first + v.second * normal_quantile(u[d]), 12);
     values.emplace_back(v.name, std::move(text));
   }
   return values;

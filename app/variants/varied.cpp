@@ -95,6 +95,14 @@ std::string Varied::value(std::uint64_t i) const {
   return kind == Kind::orders ? order_text(i, items) : values[i];
 }
 
+std::string Varied::between(double u) const {
+  const std::string text = short_digits(first + (second - first) * u, 12);
+  double value = first;
+  read_number(text, value);
+  // Rounding may lead beyond a bound, which the parameter may not pass.
+  return value < first ? to_text(first) : value > second ? to_text(second) : text;
+}
+
 std::string order_text(std::uint64_t i, int items) {
   std::vector<int> left;
   for (int k = 2; k <= items; ++k) left.push_back(k);

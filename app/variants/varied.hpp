@@ -25,6 +25,8 @@ struct Varied {
   std::uint64_t count() const;
   /// Value number i < count().
   std::string value(std::uint64_t i) const;
+  /// Of a uniform distribution: the value at u of its range, 0 to 1, to 12 digits.
+  std::string between(double u) const;
 };
 
 /// most: largest number of combinations of all values; 0: they are not combined. Faults are added to

@@ -1,5 +1,6 @@
 """A model and the computations with it: the commands of drev, one method each."""
 import contextlib
+import copy
 import json
 import os
 import re
@@ -99,8 +100,7 @@ class ModelCase:
 
     def set(self, **parameters):
         """The same model with other values of the named parameters (see `parameters`)."""
-        case = type(self).__new__(type(self))
-        case.__dict__.update(self.__dict__)
+        case = copy.copy(self)
         case._parameters = {**self._parameters, **parameters}
         return case
 
@@ -124,7 +124,8 @@ class ModelCase:
         """Simulates the model in time and returns a drev.Run.
 
 Raises ModelError for bad input, SolverError where the run failed (what there is: error.result), Interrupted where
-Ctrl-C ended it (error.result); warns with NotTrustedWarning where the energy balance is off.""",
+Ctrl-C ended it (error.result); warns with NotTrustedWarning where the energy balance is off, or the run warns of something
+else (summary["warnings"]).""",
         ("parameters", "{name: value} of the model, on top of those of the model case"),
         ("report_html", "True: the run has its report, which a notebook shows (default: in notebooks)"),
         _PROGRESS,
@@ -161,6 +162,8 @@ Ctrl-C ended it (error.result); warns with NotTrustedWarning where the energy ba
             warnings.warn(message, _errors.NotTrustedWarning, stacklevel=3)
         elif run.status != "success":
             raise _errors.SolverError(message, run)
+        for warning in run.summary["warnings"]:
+            warnings.warn(f"{self.name}: {_errors._in_python(warning)}", _errors.NotTrustedWarning, stacklevel=3)
         return run
 
     @_commands.documented("modes", "Natural frequencies and shapes without damping: drev.Modes.", _PROGRESS)
@@ -243,7 +246,7 @@ Ctrl-C ended it (error.result); warns with NotTrustedWarning where the energy ba
         """The parameters at which a figure is least, or largest: drev.Optimum (docs/parameter_study.md).
 
 `values`: {name: values}, values a sequence or a text: "uniform(1,2)", "1:0.5:3", "orders(9)". `minimise` or `maximise`
-must be given: a figure, such as "max_torque_Nm".""",
+must be given: a figure, such as "max_torque_Nm". Warns with NotTrustedWarning of what the best variant's run warns of.""",
         ("jobs", "so many threads; default: one a processor"),
         _PROGRESS,
     )
@@ -254,6 +257,9 @@ must be given: a figure, such as "max_torque_Nm".""",
         found = Optimum(self, "optimise", options, self._execute("optimise", options, words=words))
         if found.data["status"] == "failed":
             raise _errors.SolverError(f"{self.name}: no variant has a {found.data['figure']}", found)
+        for best in found.data["best"][:1]:
+            if best["warning"]:
+                warnings.warn(f"{self.name}: {_errors._in_python(best['warning'])}", _errors.NotTrustedWarning, stacklevel=2)
         return found
 
     def _study_request(self, keywords, words):

@@ -54,7 +54,8 @@ class Interrupted(KeyboardInterrupt):
 
 
 class NotTrustedWarning(UserWarning):
-    """A run reached its end, but the error of its energy balance is too large."""
+    """A run reached its end, but the error of its energy balance is too large, or it has a warning: it does not start in the
+    steady state that was asked for, say."""
 
 
 class SlowWarning(UserWarning):

@@ -44,6 +44,17 @@ class Model(ModelCase):
         model._whole_text = text
         return model
 
+    def __copy__(self):
+        """What is added to a copy later is not added to this model, too."""
+        model = type(self).__new__(type(self))
+        model.__dict__.update(self.__dict__)
+        model._sections = {
+            section: {name: dict(keys) if isinstance(keys, dict) else keys for name, keys in entries.items()}
+            for section, entries in self._sections.items()
+        }
+        model._include, model._faults, model._callables = list(self._include), list(self._faults), list(self._callables)
+        return model
+
     # Building.
     def _enter(self, section, name, values):
         if self._whole_text is not None:

@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 
 import numpy as np
 
-from . import _drev, _errors, _progress
+from . import _commands, _drev, _errors, _progress
 from ._variants import _word
 
 _TASK_SECONDS = 0.5  # time that a task should take [s]
@@ -92,7 +92,7 @@ def compute(case, values, sample, correlate, client, jobs, progress, out, resume
     if sample:
         words["--sample"] = [sample]
     if correlate:
-        words["--correlate"] = [f"{a},{b}={value!r}" for (a, b), value in correlate.items()]
+        words["--correlate"] = [f"{a},{b}={_commands._text('correlate', value)}" for (a, b), value in correlate.items()]
     request, spec = case._study_request(options, words)
     with case._findings():
         source = _drev.Study(request)
@@ -105,7 +105,7 @@ def compute(case, values, sample, correlate, client, jobs, progress, out, resume
         pool = ThreadPoolExecutor(jobs, thread_name_prefix="drev")
         submit = lambda first, count: pool.submit(_rows, spec, first, count, stop)
     else:
-        if case._keep() is not None:
+        if case._keep():
             raise TypeError("a model with laws or loads in Python cannot be sent to other processes")
         pool = client.get_executor() if hasattr(client, "get_executor") else client
         jobs = jobs or (len(client.nthreads()) if hasattr(client, "nthreads") else os.cpu_count() or 1)

@@ -214,8 +214,8 @@ class Optimum(Result):
 
     @property
     def certain(self):
-        """Whether every combination was computed and has the figure; a search proves nothing."""
-        return self.data["all_combinations"] and self.data["without_figure"] == 0
+        """Whether every combination was computed and has the figure, without a warning; a search proves nothing."""
+        return self.data["all_combinations"] and self.data["without_figure"] == 0 and self.data["with_warning"] == 0
 
     @property
     def text(self):

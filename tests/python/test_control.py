@@ -236,6 +236,26 @@ def test_an_energy_balance_that_is_off_warns():
     assert run.status == "energy_error" and not run.ok and len(run.time) > 100
 
 
+def test_a_start_that_is_no_steady_state_warns():
+    # A disc rattles in a wide gap without ever repeating.
+    m = drev.Model("rattle")
+    m.add_node("motor", constant_speed_rad_per_s=100)
+    m.add_node("disc")
+    m.add_inertia("J", "disc", inertia_kg_m2=2)
+    m.add_parameter("gap_rad", 0.02)
+    teeth = {"stiffness_Nm_per_rad": 2e5, "gap_rad": "gap_rad", "damping_Nms_per_rad": 20}
+    m.add_dead_band_coupling("teeth", ["motor", "disc"], **teeth)
+    harmonics = {"order": [1], "amplitude_Nm": [500]}
+    m.add_engine_order_torque("load", "disc", mean_Nm=20, twist_feedback=False, harmonics=harmonics)
+    m.set_run(duration_s=0.1, start="periodic")
+    with pytest.warns(drev.NotTrustedWarning, match="rattle: the run does not start in a periodic steady state") as said:
+        assert m.run().ok
+    assert said[0].filename == __file__
+    with pytest.warns(drev.NotTrustedWarning, match="does not start in a periodic steady state"):
+        best = m.optimise({"gap_rad": [0, 0.02]}, maximise="max_torque_Nm")
+    assert not best.certain
+
+
 def test_files_that_cannot_be_written():
     with pytest.raises(drev.OutputError):
         swinging().run(duration_s=0.1, out="/proc/nothing")

@@ -216,6 +216,26 @@ def test_models_that_drev_has(root):
     assert long.run().t_end == 5.0
 
 
+def test_a_node_held_by_a_misspelt_name_is_a_fault():
+    m = two_masses()
+    m.hold("moter")
+    with pytest.raises(drev.ModelError, match="nodes.moter, is held without effect: no element is at this node"):
+        m.check()
+
+
+def test_a_model_set_to_other_values_is_one_of_its_own():
+    m = two_masses()
+    m.set_run(duration_s=0.1)
+    as_it_was = m.source
+    other = m.set()
+    other.add_inertia("more", "load", inertia_kg_m2=3)
+    other.hold("motor")
+    other.set_run(duration_s=0.2)
+    assert m.source == as_it_was and other.source != as_it_was
+    other.add_node("motor")  # there already: a fault of the other model alone
+    m.check()
+
+
 def test_docstrings_and_signatures_come_with_units():
     import inspect
 

@@ -1,8 +1,11 @@
 """Many variants with a row of figures each: numbers of single runs and of the command, over threads, processes and Dask."""
 import subprocess
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
+from conftest import swinging
 
 import drev
 
@@ -70,6 +73,28 @@ def test_each_variant_has_its_own_status_reason_and_duration(tmp_path):
     assert list(runs.to_pandas()["status"]) == ["bad_input", "success", "bad_input"]
     with pytest.raises(drev.ModelError, match="= 99 mm"):
         drive.vary({"backlash_mm": [99, 20]}, **STEPS)
+
+
+def test_processes_give_the_same_rows_of_a_model_made_in_python():
+    m = swinging()
+    m.add_parameter("k_Nm_per_rad", 100.0)
+    m.add_ground_spring("ground", "load", stiffness_Nm_per_rad="k_Nm_per_rad")
+    m.set_run(duration_s=0.01)
+    values = {"k_Nm_per_rad": [100, 200]}
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        same(m.study(values, client=pool), m.study(values))
+        m.add_law("law", "load", lambda x, rate, t: x)
+        with pytest.raises(TypeError, match="cannot be sent to other processes"):
+            m.study(values, client=pool)
+
+
+def test_correlations_are_numbers_of_any_kind():
+    values = {"backlash_mm": "uniform(0.1,0.2)", "engine_rpm": "uniform(700,750)"}
+    drive = drev.load("gear_drive")
+    one, other = (
+        drive.study(values, sample="lhs:2", correlate={("backlash_mm", "engine_rpm"): c}, **STEPS) for c in (0.5, np.float64(0.5))
+    )
+    same(one, other)
 
 
 def test_dask_gives_the_same_rows():

@@ -241,3 +241,50 @@ TEST_CASE("The text of an optimisation keeps long figures apart from their value
   CHECK(found.exit_code == 0);
   CHECK(contains(found.out, "least shaft.torque_Nm.max  "));
 }
+
+TEST_CASE("An optimum whose run starts in no steady state says so, and is not certain") {
+  // A disc rattles in a wide gap without ever repeating; without the gap it is linear.
+  const TemporaryFolder folder;
+  const std::string file = (folder / "m.toml").string();
+  std::ofstream(file)
+      << "format = 1\n[parameters]\ngap_rad = { default = 0.02, min = 0, max = 1 }\n"
+         "[nodes]\nmotor = { constant_speed_rad_per_s = 100 }\ndisc = {}\n[elements]\n"
+         "J = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 2 }\n"
+         "teeth = { type = \"dead_band_coupling\", nodes = [\"motor\", \"disc\"], "
+         "stiffness_Nm_per_rad = 2e5, gap_rad = \"gap_rad\", damping_Nms_per_rad = 20 }\n"
+         "load = { type = \"engine_order_torque\", node = \"disc\", mean_Nm = 20, twist_feedback = false, "
+         "harmonics = { order = [1], amplitude_Nm = [500] } }\n[run]\nduration_s = 0.1\nstart = "
+         "\"periodic\"\n";
+  const Words words{"optimise",   file,
+                    "--vary",     "gap_rad=0,0.02",
+                    "--maximise", "max_torque_Nm",
+                    "--out",      (folder / "r").string()};
+  const auto found = drev_command(words);
+  INFO(found.out << found.err);
+  CHECK(
+      found.out.starts_with("*** WARNING: gap_rad=0.02: the run does not start in a periodic steady state"));
+  CHECK(contains(found.out, "no: 1 of the 2 combinations have a warning"));
+  const Json json = Json::parse(read_file(folder / "r/optimum.json"));
+  CHECK(json.at("with_warning") == 1);
+  CHECK(contains(json.at("best")[0].at("warning"), "does not start in a periodic steady state"));
+  CHECK(json.at("best")[1].at("warning").is_null());
+}
+
+TEST_CASE("A search for the largest value at a bound tries the bound, and no value beyond it") {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "m.toml").string();
+  std::ofstream(file)
+      << "format = 1\n[parameters]\nk_Nm_per_rad = { default = 100, min = 1, max = 166.66666666666666 }\n"
+         "[nodes]\nwall = { hold = true }\ndisc = { initial_speed_rad_per_s = 1 }\n[elements]\n"
+         "J = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 1 }\n"
+         "s = { type = \"shaft_spring\", nodes = [\"wall\", \"disc\"], "
+         "stiffness_Nm_per_rad = \"k_Nm_per_rad\" }\n[run]\nduration_s = 0.5\n";
+  const Words words{
+      "optimise",      file,         "--vary", "k_Nm_per_rad=uniform(100,166.66666666666666)", "--maximise",
+      "max_torque_Nm", "--variants", "40"};
+  const auto text = drev_command(words);
+  INFO(text.out << text.err);
+  CHECK(contains(text.out, "k_Nm_per_rad=166.66666666666666"));
+  CHECK_FALSE(contains(text.out, "failed"));
+  CHECK(contains(text.out, "another --seed finds more"));
+}

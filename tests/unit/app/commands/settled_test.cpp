@@ -410,3 +410,18 @@ TEST_CASE("A torque of which rounding leaves little is printed with what it leav
   CHECK(std::abs(off) < results["max_error"].get<double>());
   CHECK(contains(run.text.substr(run.text.find("Largest torque")), " +- "));
 }
+
+TEST_CASE("Advice is of the figures that a run has: from its start, and settled") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "m.toml").string();
+  for (const char* run :
+       {"start = \"static\"\n", "start = \"periodic\"\n", "settle_s = 2\n", "settle = \"auto\"\n"}) {
+    const std::string model = disc("8", run);
+    std::ofstream(path) << model;
+    const auto advice = drev_command({"advise", path, "--for", "peak torque", "--json"});
+    INFO(run << advice.err);
+    REQUIRE(advice.exit_code == 0);
+    const double value = Json::parse(advice.out).at("rungs").back().at("value");
+    CHECK(value == Approx(run_of(model).json["results"]["max_torque_Nm"].get<double>()).epsilon(1e-3));
+  }
+}

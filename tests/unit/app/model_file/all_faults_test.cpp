@@ -198,3 +198,19 @@ TEST_CASE("A run that records nothing says so") {
   CHECK(run.exit_code == 0);
   CHECK(contains(run.out, "of no channel"));
 }
+
+TEST_CASE("A held node, or one of given motion, that no element is at is a fault") {
+  const auto with_node = [](const std::string& node) {
+    std::string text = train("");
+    return text.insert(text.find("[elements]"), node + "\n");
+  };
+  require_faults(with_node("c = { hold = true }"),
+                 {"m.toml:5:1: nodes.c, is held without effect: no element is at this node"});
+  require_faults(with_node("c = { given_motion = { amplitude_deg = 1, frequency_Hz = 2 } }"),
+                 {"nodes.c, has a given motion without effect"});
+  CHECK(checked(with_node("c = { hold = true, when = false }")).exit_code == 0);
+  // An element that is wrong may be at it.
+  require_faults(with_node("c = { hold = true }") +
+                     "k = { type = \"shaft_spring\", nodes = [\"b\", 3], stiffness_Nm_per_rad = 5 }\n",
+                 {"elements.k"});
+}
