@@ -69,6 +69,9 @@ void check_orders_of(const ModelRequest& model, const CommandLine& line, std::ve
     findings.push_back({kCommandLine, "--orders-of", *node, "",
                         "is for models in which nothing turns nominally, or whose reference shaft runs up "
                         "freely; orders are of the reference shaft"});
+  else if (!turned_with(model.model_case.model, model.system, *node))
+    findings.push_back(
+        {kCommandLine, "--orders-of", *node, "", "cannot turn: it is held, or an element ties it to ground"});
 }
 
 /// The tolerance of exact propagation, or of controlled steps.

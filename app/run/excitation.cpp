@@ -179,18 +179,23 @@ Excitation find_excitation(const System& system, const ModeSet& modes, const Spe
   return found;
 }
 
-std::string driven_node(const System& system) {
-  double largest = 0.0;
-  std::string node;
+std::vector<std::string> driven_nodes(const System& system) {
+  std::vector<std::pair<double, int>> driven;  // range, node
   for (const LoadTerm& term : system.loads()) {
     const std::vector<double> torque = two_turns(*term.load, kTurning);
     const double range = range_of(torque);
-    const bool orders = dynamic_cast<const HarmonicLoad*>(term.load) != nullptr || repeats(torque);
-    if (!alternates(range) || !orders || !(range > (1.0 + kAmplitudeRounding) * largest)) continue;
-    largest = range;
-    node = system.node_names()[static_cast<std::size_t>(term.node)];
+    if (alternates(range) && (dynamic_cast<const HarmonicLoad*>(term.load) != nullptr || repeats(torque)))
+      driven.emplace_back(range, term.node);
   }
-  return node;
+  std::vector<std::string> names;
+  while (!driven.empty()) {
+    auto largest = driven.begin();  // the first of equal ones
+    for (auto d = driven.begin(); d != driven.end(); ++d)
+      if (d->first > (1.0 + kAmplitudeRounding) * largest->first) largest = d;
+    names.push_back(system.node_names()[idx(largest->second)]);
+    driven.erase(largest);
+  }
+  return names;
 }
 
 SpeedRange speed_range(const System& system, double duration) {

@@ -30,9 +30,8 @@ struct Crossing {
 /// At which loads are looked at where no speed is known [rad/s].
 inline constexpr double kTurning = 1.0;
 
-/// The node on which the torque acts whose range over two turns of its node is the largest, the first of equal ones; empty:
-/// none has orders.
-std::string driven_node(const System& system);
+/// The nodes on which torques with orders act, that of the largest range over two turns of its node first.
+std::vector<std::string> driven_nodes(const System& system);
 
 /// Name of the node through which the reference motion was given: the reference shaft, whose speed the speeds of a sweep are.
 /// Empty: there is none.

@@ -388,6 +388,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
     result.status = to_text(result.summary.status);
     result.reason = result.summary.reason;
   } catch (const SolverError& error) {
+    if (const auto* run = dynamic_cast<const RunError*>(&error)) result.summary = run->summary;
     result.status = "failed";
     result.reason = error.what();
     result.summary.scheme = result.method.name;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace drev::app {
 
@@ -22,18 +23,22 @@ bool turns_actually(const System& system, double duration) {
                      [&](const std::string& node) { return system.ratio(system.node(node)) != 0.0; });
 }
 
+std::optional<System> turned_with(const Model& model, const System& system, const std::string& node) {
+  if (system.reference()) return system;
+  Model turning = model;
+  try {
+    turning.set_reference(node, constant_speed(kTurning));
+    return turning.build();
+  } catch (const ModelError&) {  // something ties it to ground
+    return std::nullopt;
+  }
+}
+
 OrderShaft order_shaft(const Model& model, const System& system, const std::string& named, double duration) {
   if (!turns_actually(system, duration)) return {};
-  OrderShaft shaft{named.empty() ? driven_node(system) : named, {}};
-  if (shaft.node.empty()) return shaft;
-  if (system.reference()) {
-    shaft.turned = system;
-  } else {
-    Model turning = model;
-    turning.set_reference(shaft.node, constant_speed(kTurning));
-    shaft.turned = turning.build();
-  }
-  return shaft;
+  for (const std::string& node : named.empty() ? driven_nodes(system) : std::vector{named})
+    if (auto turned = turned_with(model, system, node)) return {node, std::move(turned)};
+  return {};
 }
 
 RunUpWatch::RunUpWatch(const System& full, const ModeSet* modes, const System& system, double duration,

@@ -23,8 +23,10 @@ struct OrderShaft {
 };
 /// Whether orders of such a run are of an actual angle.
 bool turns_actually(const System& system, double duration);
-/// Where turns_actually(): the node named, or, that empty, the one that is driven (driven_node(): the
-/// orders of its torque are counted by its own turns).
+/// The model with this node as its reference shaft, or as it is where it has one; nullopt: the node is tied to ground.
+std::optional<System> turned_with(const Model& model, const System& system, const std::string& node);
+/// Where turns_actually(): the node named, or, that empty, the first of driven_nodes() that can turn (the orders of its
+/// torque are counted by its own turns).
 OrderShaft order_shaft(const Model& model, const System& system, const std::string& named, double duration);
 
 struct SpeedsPassed {

@@ -2,7 +2,9 @@
 
 #include <drev/core/error.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/dense/factorization.hpp"
 #include "solvers/contact/linear_complementarity.hpp"
@@ -79,6 +81,8 @@ class FrictionProblem {
     auto found = finite ? solve_complementarity(m, q) : std::nullopt;
     // M is not copositive where a self-locking gear's load is heavy: Lemke's method may end on a ray beside a solution.
     if (!found && finite) found = try_every_set(m, q, at_rest_set());
+    if (found && wedges(*found, a_0 + a_z * found->z))
+      if (auto other = try_every_set(m, q, friction_holds_set())) found = std::move(other);
     if (!found)
       throw SolverError(
           "the torques of dry friction and lossy gears have no solution at this instant: a self-locking gear "
@@ -91,18 +95,8 @@ class FrictionProblem {
     result.a = result.a.cwiseQuotient(scale_);
     result.lambda = result.lambda.cwiseProduct(scale_);
     for (const Eigen::Index i : free_) result.a[i] = 0.0;
-    const auto holds = [&](int variable) {
-      return variable >= 0 && !found->basic[static_cast<std::size_t>(variable)];
-    };
     for (Eigen::Index i = 0; i < n_; ++i) {
-      const Variables& v = of_[static_cast<std::size_t>(i)];
-      int side = v.fixed;
-      if (v.below_high >= 0) {  // lambda = high - u
-        if (holds(v.below_high)) side = 1;
-        if (side == 0 && v.backward >= 0 && !holds(v.backward)) side = -1;
-      } else if (v.above_low >= 0 && holds(v.above_low)) {
-        side = -1;
-      }
+      const int side = side_of(i, *found);
       result.side.push_back(side);
       if (gear_of_[static_cast<std::size_t>(i)] >= 0) continue;
       if (side > 0) result.lambda[i] = p_.high[i];
@@ -113,13 +107,15 @@ class FrictionProblem {
       const int side = result.side[static_cast<std::size_t>(g.loss)];
       const std::vector<GearLossRow::Line>& lines = side < 0 ? g.low : g.high;
       const int other = side < 0 ? v.low_line : v.high_line;
-      const bool second = other >= 0 && !holds(other);
+      const bool second = other >= 0 && !holds(other, *found);
       result.line.push_back(side == 0 ? -1 : lines[second ? 1 : 0].number);
     }
     return result;
   }
 
  private:
+  static constexpr char kAny = 2;  // of a variable: whether it is basic does not matter
+
   struct Condition {
     Affine w;
     Eigen::Index of_acceleration = -1;  ///< a further term: sign times that row's acceleration
@@ -132,15 +128,53 @@ class FrictionProblem {
     int free = -1;
   };
 
+  static bool holds(int variable, const ComplementarySolution& found) {
+    return variable >= 0 && !found.basic[static_cast<std::size_t>(variable)];
+  }
+  /// 1: the row is on its high bound, -1: on its low one.
+  int side_of(Eigen::Index i, const ComplementarySolution& found) const {
+    const Variables& v = of_[static_cast<std::size_t>(i)];
+    if (v.below_high >= 0) {  // lambda = high - u
+      if (holds(v.below_high, found)) return 1;
+      return v.backward >= 0 && !holds(v.backward, found) ? -1 : v.fixed;
+    }
+    return holds(v.above_low, found) ? -1 : v.fixed;
+  }
+  bool is_gear(Eigen::Index i) const { return gear_of_[static_cast<std::size_t>(i)] >= 0; }
+
+  /// Whether a self-locking gear at rest stands between its bounds beside friction that is on its own, though nothing moves.
+  /// The friction presses the gear then harder than what drives it, and where that turns there is no way on.
+  bool wedges(const ComplementarySolution& found, const Eigen::VectorXd& a) const {
+    const bool between = std::ranges::any_of(gears_, [&](const GearLossRow& g) {
+      const auto locks = [](const GearLossRow::Line& line) { return line.slope <= -1.0; };
+      return side_of(g.loss, found) == 0 &&
+             (std::ranges::any_of(g.high, locks) || std::ranges::any_of(g.low, locks));
+    });
+    if (!between) return false;
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      const double rounding = p_.rounding[i] * scale_[i] + kRounding * r_.lpNorm<Eigen::Infinity>();
+      if (!is_gear(i) && side_of(i, found) != 0 && std::abs(a[i]) <= rounding) return true;
+    }
+    return false;
+  }
+
   /// Which variables are basic where nothing at rest moves; that of lines does not matter.
   std::vector<char> at_rest_set() const {
-    constexpr char kAny = 2;
     std::vector<char> basic(static_cast<std::size_t>(variables_), kAny);
-    const auto put = [&](int variable, char value) {
-      if (variable >= 0) basic[static_cast<std::size_t>(variable)] = value;
-    };
-    for (const Variables& v : of_) put(v.below_high, 1), put(v.above_low, 1), put(v.backward, 0);
+    for (Eigen::Index i = 0; i < n_; ++i) put_between(i, basic);
     return basic;
+  }
+  /// Where friction stands between its bounds; what gears do does not matter.
+  std::vector<char> friction_holds_set() const {
+    std::vector<char> basic(static_cast<std::size_t>(variables_), kAny);
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (!is_gear(i)) put_between(i, basic);
+    return basic;
+  }
+  void put_between(Eigen::Index i, std::vector<char>& basic) const {
+    const Variables& v = of_[static_cast<std::size_t>(i)];
+    for (const auto& [variable, value] : {std::pair{v.below_high, 1}, {v.above_low, 1}, {v.backward, 0}})
+      if (variable >= 0) basic[static_cast<std::size_t>(variable)] = static_cast<char>(value);
   }
   void count() {
     scale_.resize(n_);

@@ -72,8 +72,7 @@ class ExactRun final : public StepMotion {
     }
     laws_.locate(now_.inputs);
     locate_friction();
-    EnergyMonitor energy(assembler_, now_);
-    energy_ = &energy;
+    energy_.emplace(assembler_, now_);
     forces_ = std::ranges::any_of(observers_, &Observer::needs_acceleration);
     watches_loads_ = std::ranges::any_of(observers_, &Observer::watches_loads);
     for (Observer* o : observers_) o->look_through(*this);
@@ -81,11 +80,16 @@ class ExactRun final : public StepMotion {
     check_start(summary_, assembler_, now_);
     const Stops stops(system_, options_.t_end, 0.0, {}, &controls_);
     while (running() && now_.state.t < options_.t_end) run_to(next_stop(stops));
-    summary_.t_end = now_.state.t;
-    summary_.solves = series_.products();
-    summary_.energy = energy.balance();
+    so_far();
     const double rounding = friction_.energy_of_rounding(options_.t_end - options_.t_start);
     if (!(std::abs(summary_.energy.worst_imbalance) <= rounding)) judge_energy(summary_, allowed_imbalance_);
+    return summary_;
+  }
+
+  const RunSummary& so_far() {
+    summary_.t_end = now_.state.t;
+    summary_.solves = series_.products();
+    if (energy_) summary_.energy = energy_->balance();
     return summary_;
   }
 
@@ -463,7 +467,7 @@ class ExactRun final : public StepMotion {
   EvaluatedState now_, next_, inside_[2], look_;
   Vector rhs_;
   Progress progress_;
-  EnergyMonitor* energy_ = nullptr;
+  std::optional<EnergyMonitor> energy_;
   RunSummary summary_;
   double fastest_ = 0.0, allowed_imbalance_ = 0.0;
   StepLength length_;
@@ -483,16 +487,13 @@ RunSummary propagate(const System& system, const ExactOptions& options, State& s
     RunSummary summary = run.run();
     state = run.take_state();
     return summary;
-  } catch (...) {  // no solution, or a user's function threw: the last state is not lost
+  } catch (const SolverError& error) {  // what there is of the run is not lost
+    state = run.take_state();
+    throw RunError(error, run.so_far());
+  } catch (...) {  // a user's function threw
     state = run.take_state();
     throw;
   }
-}
-
-RunSummary propagate(const System& system, const ExactOptions& options,
-                     const std::vector<Observer*>& observers) {
-  State state = State::initial(system, options.t_start);
-  return propagate(system, options, state, observers);
 }
 
 }  // namespace drev

@@ -62,13 +62,16 @@ void check_propagation(const System& system, const ExactOptions& options, const 
 /// Runs from the state given and leaves the last state in it. Observers see the end of every step,
 /// contact changes and breakpoints among them, and points between, those they ask for among them: to watch
 /// a run does not change it. Throws ModelError
-/// for bad options and for a system that why_not_exact() refuses, SolverError (with time and
-/// element) if laws change without end at one time. RunSummary.scheme is "exact".
+/// for bad options and for a system that why_not_exact() refuses, RunError (with time and element) if laws change
+/// without end at one time, or friction has no solution. RunSummary.scheme is "exact".
 RunSummary propagate(const System& system, const ExactOptions& options, State& state,
                      const std::vector<Observer*>& observers = {});
 
 /// The same from the model's initial conditions.
-RunSummary propagate(const System& system, const ExactOptions& options,
-                     const std::vector<Observer*>& observers = {});
+inline RunSummary propagate(const System& system, const ExactOptions& options,
+                            const std::vector<Observer*>& observers = {}) {
+  State state = State::initial(system, options.t_start);
+  return propagate(system, options, state, observers);
+}
 
 }  // namespace drev

@@ -260,7 +260,7 @@ bool FrictionSeries::pass(const Change& change, const Assembler& assembler, Eval
     return false;
   }
   if (change.s == 0.0) patience_ *= 2.0;
-  bool breaks_away = false;
+  bool released = false;
   if (change.s == 0.0 && order > 0) {
     std::vector<char> rested(contacts_.size(), 0);
     for (std::size_t i = 0; i < contacts_.size(); ++i) rested[i] = contacts_[i].stuck || contacts_[i].tied;
@@ -268,17 +268,17 @@ bool FrictionSeries::pass(const Change& change, const Assembler& assembler, Eval
     Contact* first = nullptr;  // the contact that breaks away first; the others are asked again
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       Contact& other = contacts_[i];
-      if (!rested[i] || other.stuck || other.tied || law(i).one_way() || law(i).break_away() == 1.0) continue;
+      if (!rested[i] || other.stuck || other.tied || !breaks_away(i)) continue;
       if (!first || static_cast<int>(i) == change.contact) first = &other;
     }
-    breaks_away = first != nullptr;
+    released = first != nullptr;
     if (first) first->loose = true;
-    if (!breaks_away) return false;
+    if (!released) return false;
   }
   std::vector<char> at_rest(contacts_.size(), 0);
   for (std::size_t i = 0; i < contacts_.size(); ++i)
     at_rest[i] = contacts_[i].stuck || contacts_[i].tied || (contacts_[i].root && !contacts_[i].open);
-  if (!breaks_away && change.what != What::drive_turns) at_rest[idx(change.contact)] = 1;
+  if (!released && change.what != What::drive_turns) at_rest[idx(change.contact)] = 1;
   // Where the change was located its own slip is rounding: of others that meet zero with it (a clutch beside a freewheel), too.
   const double located = bound ? 0.0 : kSlack * std::abs(slip_of(c, assembler, point.state.v));
   resolve(assembler, point, at_rest, located);
@@ -347,7 +347,7 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
     const double all = problem.w.row(k).lpNorm<1>() * largest;
     problem.rounding[k] = patience_ * kSameSlope * (std::abs(problem.r[k]) + (chosen ? own : all));
   }
-  const FrictionSolution found = solve(problem, gears);
+  const FrictionSolution found = solve_at(point.state.t, problem, gears, of);
   if (gears_) problem.rounding += patience_ * kSameSlope * (problem.w.cwiseAbs() * found.lambda.cwiseAbs());
   begin_stuck();
   take(of, found, problem, gears);

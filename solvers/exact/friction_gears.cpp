@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/dense/factorization.hpp"
 #include "solvers/contact/friction_complementarity.hpp"
@@ -89,6 +90,23 @@ FrictionSeries::LossValues FrictionSeries::loss_values(const Contact& c, const G
                    : LossValues{on_segment(loss.backward), on_segment(loss.bearing_backward)};
 }
 
+FrictionSolution FrictionSeries::solve_at(double t, const BoxComplementarity& problem,
+                                          const std::vector<GearLossRow>& gears,
+                                          const std::vector<std::size_t>& of) const {
+  try {
+    return solve(problem, gears);
+  } catch (const SolverError& error) {
+    std::string names;
+    for (const GearLossRow& g : gears)
+      names += (names.empty() ? "" : ", ") +
+               system_
+                   .element_instances()[idx(
+                       index(element(static_cast<int>(of[static_cast<std::size_t>(g.loss)]))))]
+                   .name;
+    throw SolverError(at_time(system_.name(), t) + (names.empty() ? "" : names + ": ") + error.what());
+  }
+}
+
 GearLossRow FrictionSeries::gear_at(std::size_t i, double speed, bool at_rest) const {
   const Contact& c = contacts_[i];
   GearLossRow row{.loss = static_cast<Eigen::Index>(i), .tie = c.tie};
@@ -138,21 +156,21 @@ GearLossRow FrictionSeries::gear_derivative(std::size_t i, const Change& change,
     }
     (sign > 0 ? row.high : row.low).push_back(found);
   };
+  // Those of its lines that meet the torque. A bound is as far off as the farther of its two lines: without bearing torques
+  // a line of the one may meet the torque together with a line of the other, which is far.
+  const auto add_bound = [&](std::span<const Bound> lines) {
+    for (const Bound& b : lines) {
+      const auto end = b.g.begin() + order;
+      const auto first = std::find_if(b.g.begin(), end, [](double x) { return x != 0.0; });
+      if (first != end && *first > 0.0) return;
+    }
+    for (const Bound& b : lines)
+      if (zero_before(b, order)) add(b.line, b.what == What::bound_high ? 1 : -1, -b.g[level]);
+  };
   if (c.stuck) {
-    // A bound is as far off as the farther of its two lines: without bearing torques a line of the one may meet the
-    // torque together with a line of the other, which is far.
-    const auto far = [&](What what) {
-      return std::any_of(c.bounds.begin(), c.bounds.end(), [&](const Bound& b) {
-        const auto end = b.g.begin() + order;
-        const auto first = std::find_if(b.g.begin(), end, [](double x) { return x != 0.0; });
-        return b.what == what && first != end && *first > 0.0;
-      });
-    };
-    for (const Bound& b : c.bounds)
-      if (zero_before(b, order) && !far(b.what)) {
-        const int sign = b.what == What::bound_high ? 1 : -1;
-        add(b.line, sign, -b.g[level]);
-      }
+    const std::span<const Bound> bounds = c.bounds;  // as find_gear_bounds() lists them
+    add_bound(bounds.first(2));
+    add_bound(bounds.last(2));
     return row;
   }
   const bool chosen = static_cast<int>(i) == change.contact && change.what == What::slip_ends;
@@ -163,6 +181,8 @@ GearLossRow FrictionSeries::gear_derivative(std::size_t i, const Change& change,
   add(c.line, c.sign, 0.0);
   for (const Bound& b : c.bounds)
     if (b.what == What::drive_turns && zero_before(b, order)) add(b.line, c.sign, b.g[level]);
+  // Where the gear carries nothing its bounds meet.
+  if (rests) add_bound(gear_bound(i, c.sign > 0 ? What::bound_low : What::bound_high));
   return row;
 }
 
@@ -255,36 +275,48 @@ std::vector<double> FrictionSeries::loss_gap(const Contact& c, const GearLoss& l
 void FrictionSeries::find_gear_bounds(std::size_t i) {
   using What = Change::What;
   Contact& c = contacts_[i];
-  const GearLoss& loss = *law(i).gear_loss();
-  std::vector<double> size;
-  const Contact& tie = contacts_[idx(c.tie)];
-  const bool at_root = c.root || c.line_root || resolved_;
-  const double slack = at_root ? c.torque_slack + tie.torque_slack : 0.0,
-               rounding = c.torque_rounding + tie.torque_rounding + slack;
   if (!c.stuck) {
     const int other = 1 - c.line;
-    c.bounds.push_back(
-        {.what = What::drive_turns, .g = loss_gap(c, loss, other, c.sign, size), .line = other});
-    clean(c.bounds.back(), size, kOnGearBound * size[0] + rounding, slack, c.line_root, bounded_patience());
+    std::vector<double> size;
+    c.bounds.push_back({.what = What::drive_turns,
+                        .g = loss_gap(c, *law(i).gear_loss(), other, c.sign, size),
+                        .line = other});
+    clean(c.bounds.back(), size, kOnGearBound * size[0] + gear_rounding(c), gear_slack(c), c.line_root,
+          bounded_patience());
     return;
   }
-  for (const What what : {What::bound_high, What::bound_low}) {
-    const int sign = what == What::bound_high ? 1 : -1;
-    const bool root = c.root && c.root_bound == sign;
-    Bound both[2];
-    std::vector<double> sizes[2];
-    for (const int line : {0, 1}) {
-      both[line] = {.what = what, .g = loss_gap(c, loss, line, sign, sizes[line]), .line = line};
-      for (double& x : both[line].g) x = -x;
-    }
-    const double nearest = std::max(both[0].g[0], both[1].g[0]);
-    for (const int line : {0, 1}) {
-      const bool on_it = root && both[line].g[0] >= nearest - kSameBound * sizes[line][0];
-      clean(both[line], sizes[line], kOnGearBound * sizes[line][0] + rounding, slack, on_it,
-            bounded_patience());
-      c.bounds.push_back(std::move(both[line]));
-    }
+  for (const What what : {What::bound_high, What::bound_low})
+    for (Bound& b : gear_bound(i, what)) c.bounds.push_back(std::move(b));
+}
+
+/// The two lines of a bound of a gear at rest.
+std::array<FrictionSeries::Bound, 2> FrictionSeries::gear_bound(std::size_t i, Change::What what) const {
+  const Contact& c = contacts_[i];
+  const double slack = gear_slack(c);
+  const int sign = what == Change::What::bound_high ? 1 : -1;
+  const bool root = c.root && c.root_bound == sign;
+  std::array<Bound, 2> both;
+  std::vector<double> sizes[2];
+  for (const int line : {0, 1}) {
+    both[line] = {.what = what, .g = loss_gap(c, *law(i).gear_loss(), line, sign, sizes[line]), .line = line};
+    for (double& x : both[line].g) x = -x;
   }
+  const double nearest = std::max(both[0].g[0], both[1].g[0]);
+  for (const int line : {0, 1}) {
+    const bool on_it = root && both[line].g[0] >= nearest - kSameBound * sizes[line][0];
+    clean(both[line], sizes[line], kOnGearBound * sizes[line][0] + gear_rounding(c), slack, on_it,
+          bounded_patience());
+  }
+  return both;
+}
+
+double FrictionSeries::gear_slack(const Contact& c) const {
+  const bool at_root = c.root || c.line_root || resolved_;
+  return at_root ? c.torque_slack + contacts_[idx(c.tie)].torque_slack : 0.0;
+}
+
+double FrictionSeries::gear_rounding(const Contact& c) const {
+  return c.torque_rounding + contacts_[idx(c.tie)].torque_rounding + gear_slack(c);
 }
 
 void FrictionSeries::note_gear(std::size_t i, double speed, Vector& history) const {

@@ -102,6 +102,8 @@ FrictionSeries::Limits FrictionSeries::limits(std::size_t i, bool loose) const {
   return {-most, most};
 }
 
+bool FrictionSeries::breaks_away(std::size_t i) const { return limits(i, false).high > limits(i, true).high; }
+
 void FrictionSeries::find_segment(std::size_t i, double slip) {
   const std::vector<double>& speeds = law(i).slip_speeds();
   const auto above = std::upper_bound(speeds.begin() + 1, speeds.end(), std::abs(slip));
@@ -243,7 +245,7 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
       for (const GearLossRow& g : gears)
         problem.rounding[k] += kNoAcceleration * std::abs(problem.w(k, g.loss)) * largest_constant(g);
     }
-    if (m > 0) found = solve(problem, gears);
+    if (m > 0) found = solve_at(assembler.time(), problem, gears, resting);
     if (m > 0 && gears_)  // through ties, torques accelerate contacts far from them
       problem.rounding += kNoAcceleration * (problem.w.cwiseAbs() * found.lambda.cwiseAbs());
     // One breaks away at a time, the fastest: what it then carries is less, and the others are asked again.
@@ -251,8 +253,7 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     double largest = 0.0;
     for (Eigen::Index k = 0; k < m; ++k) {
       Contact& c = contacts_[resting[static_cast<std::size_t>(k)]];
-      const Friction& friction = law(resting[static_cast<std::size_t>(k)]);
-      if (c.loose || friction.one_way() || friction.break_away() == 1.0) continue;
+      if (c.loose || !breaks_away(resting[static_cast<std::size_t>(k)])) continue;
       if (std::abs(found.a[k]) <= std::max(problem.rounding[k], largest)) continue;
       largest = std::abs(found.a[k]);
       fastest = &c;

@@ -163,6 +163,8 @@ class FrictionSeries final : public TermForces {
   void find_segment(std::size_t i, double slip);
   /// Per engagement, at rest: what a stuck contact can hold, or one that broke loose at this instant.
   Limits limits(std::size_t i, bool loose) const;
+  /// Whether it holds more at rest than it carries where it begins to slide.
+  bool breaks_away(std::size_t i) const;
   double slip_of(const Contact& c, const Assembler& assembler, const Vector& v) const;
   /// at_rest: contacts known to be; others are where their slip is rounding, or within `slack` of zero.
   void resolve(const Assembler& assembler, EvaluatedState& point, const std::vector<char>& at_rest,
@@ -182,6 +184,9 @@ class FrictionSeries final : public TermForces {
   bool on_line(const Contact& c) const { return c.tie >= 0 && !c.stuck; }
   LossValues loss_values(const Contact& c, const GearLoss& loss, int line) const;
   void check_ties(const Assembler& assembler, const Vector& v) const;
+  /// solve(); its error names the time and the gears.
+  FrictionSolution solve_at(double t, const BoxComplementarity& problem,
+                            const std::vector<GearLossRow>& gears, const std::vector<std::size_t>& of) const;
   GearLossRow gear_at(std::size_t i, double speed, bool at_rest) const;
   GearLossRow gear_derivative(std::size_t i, const Change& change, int order) const;
   void add_gear(const TaylorSeries& series, std::size_t i, int k, double factor, double* term);
@@ -189,6 +194,9 @@ class FrictionSeries final : public TermForces {
   std::vector<double> loss_gap(const Contact& c, const GearLoss& loss, int line, int sign,
                                std::vector<double>& size) const;
   void find_gear_bounds(std::size_t i);
+  std::array<Bound, 2> gear_bound(std::size_t i, Change::What what) const;
+  double gear_slack(const Contact& c) const;
+  double gear_rounding(const Contact& c) const;
   void note_gear(std::size_t i, double speed, Vector& history) const;
   /// Whether bounds[k] and the next one are a gear's two lines: at rest, it holds while either does.
   static bool two_lines(const std::vector<Bound>& bounds, std::size_t k) {

@@ -1,5 +1,5 @@
 // Which orders excite which modes, with loads at the speeds at which they meet; beside closed forms.
-// Covers app/run/excitation.hpp
+// Covers app/run/excitation.hpp and order_shaft() of app/run/run_up.hpp
 #include "app/run/excitation.hpp"
 
 #include <drev/core/units.hpp>
@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/run/run_up.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
 
@@ -84,12 +85,36 @@ TEST_CASE("Gas and mass torques of a cylinder excite by what they are at each cr
     }
     CHECK(answer_at(found, 0.5) == Approx(5e5 * area * r / kStiffness).epsilon(1e-6));
   }
-  CHECK(driven_node(loaded_disc<EngineCylinders>(0.0, rpm(1200.0),
-                                                 {.bore = 0.1,
-                                                  .stroke = 2.0 * r,
-                                                  .rod = r / q,
-                                                  .oscillating_mass = mass,
-                                                  .firing_angles = {0.0}})) == "disc");
+  CHECK(driven_nodes(loaded_disc<EngineCylinders>(0.0, rpm(1200.0),
+                                                  {.bore = 0.1,
+                                                   .stroke = 2.0 * r,
+                                                   .rod = r / q,
+                                                   .oscillating_mass = mass,
+                                                   .firing_angles = {0.0}})) ==
+        std::vector<std::string>{"disc"});
+}
+
+TEST_CASE("The shaft of orders is one that can turn: not the nodes that springs tie to ground") {
+  const auto grounded = [](bool other) {
+    Model m("arm and motor");
+    for (const char* node : {"motor", "arm"}) {
+      m.add_node(node);
+      m.add<Inertia>(std::string("J ") + node, {node}, {.inertia = 1.0});
+    }
+    m.add<GroundSpring>("spring", {"arm"}, {.stiffness = 10.0});
+    const auto swings = [](double size) {
+      return TorqueFunction::Params{
+          .torque = [size](const TorqueVariables& x) { return size * sin(x.angle); }};
+    };
+    m.add<TorqueFunction>("gravity", {"arm"}, swings(-2.0));
+    if (other) m.add<TorqueFunction>("cogging", {"motor"}, swings(0.1));
+    return m;
+  };
+  for (const bool other : {false, true}) {
+    const Model m = grounded(other);
+    CHECK(order_shaft(m, m.build(), "", 1.0).node == (other ? "motor" : ""));
+    CHECK_FALSE(turned_with(m, m.build(), "arm"));
+  }
 }
 
 TEST_CASE("Orders that a load states are its orders, whether they repeat in two turns or not") {

@@ -353,3 +353,21 @@ TEST_CASE("Friction: methods that cannot take it say so, and speeds that a freew
   CHECK(choose_method(system, 1.0, 1e-3).method.exact());
   CHECK_THROWS_WITH(StaticSolver(system), Catch::Contains("does not take dry friction"));
 }
+
+TEST_CASE(
+    "A clutch that carries nothing does not break away, whatever its ratio: a freewheel beside it goes on") {
+  Model m("idle clutch");
+  for (const char* node : {"a", "b", "c"}) {
+    m.add_node(node);
+    m.add<Inertia>(std::string("J ") + node, {node}, {.inertia = 1.0});
+  }
+  m.add<Freewheel>("freewheel", {"a", "b"}, {});
+  const TimeTable from_1({1.0, 1.0}, {0.0, 1.0});
+  m.add<Clutch>("clutch", {"b", "c"}, {.torque = 0.0, .break_away_ratio = 1.5, .engagement = from_1});
+  m.add<Brake>("brake", {"a"}, {.torque = 2.0, .engagement = from_1});
+  m.add<AppliedTorque>("load", {"b"}, {.harmonics = {{.order = 1.0, .amplitude = 1.0, .phase = -kPi / 2}}});
+  const System system = m.build();
+  const FrictionRun r = test::ran_to(system, 1.5);
+  // b alone: v = (1 - cos 2 pi t)/(2 pi), at rest at each whole second.
+  CHECK(r.state.v[system.node_map(system.node("b")).unknown] == Approx(1.0 / kPi).epsilon(1e-12));
+}

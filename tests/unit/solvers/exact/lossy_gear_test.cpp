@@ -289,6 +289,61 @@ TEST_CASE("Lossy gear: held at rest together with a brake, whatever follows the 
       }
 }
 
+TEST_CASE("Lossy gear: a self-locking worm rests beside friction, whichever way its load turns") {
+  // Friction holds the wheel: it could press the worm harder than the load does, and then there were no way on.
+  struct Case {
+    double j_1, j_2, friction;
+    bool both;
+    LossyGear::Params gear;
+    TimeTable load;
+    double on_wheel;
+  };
+  const LossyGear::Params hoist{.ratio = 0.05, .efficiency_forward = 0.61, .efficiency_backward = -0.1},
+      even{.ratio = 1.0, .efficiency_forward = 0.8, .efficiency_backward = 0.0};
+  for (const Case& c : {Case{0.0137, 0.83, 7.3, false, hoist, TimeTable({0.0, 1.0}, {0.17, -0.21}), 0.0},
+                        Case{1.0, 1.0, 2.0, false, even, TimeTable({0.0, 1.0, 2.0}, {1.0, -1.0, 1.0}), -1.0},
+                        Case{1.0, 1.0, 1.0, true, even, TimeTable({0.0, 1.0}, {0.0, 1.5}), 0.0},
+                        Case{1.0, 1.0, 1.0, true, even, TimeTable({0.0, 1.0}, {0.0, -1.5}), 0.0}}) {
+    CAPTURE(c.j_1, c.both, c.on_wheel, c.load.values().back());
+    Model m = gear_train(c.j_1, c.j_2, c.gear);
+    m.add<BearingFriction>("friction", {"b"}, {.torque = c.friction});
+    if (c.both) m.add<BearingFriction>("on worm", {"a"}, {.torque = c.friction});
+    m.add<AppliedTorque>("load", {"a"}, {.table = c.load});
+    if (c.on_wheel != 0.0) load(m, "b", c.on_wheel);
+    const System system = m.build();
+    const FrictionRun r = ran(system, c.load.times().back());
+    CHECK(r.state.v.lpNorm<Eigen::Infinity>() < 1e-13);
+    // Held by what the gear passes on and the friction: each within what it can do.
+    const double in = channel_at(system, r.state, "gear.torque_in_Nm"),
+                 out = channel_at(system, r.state, "gear.torque_out_Nm"),
+                 held = channel_at(system, r.state, "friction.torque_Nm"),
+                 worm = c.both ? channel_at(system, r.state, "on worm.torque_Nm") : 0.0;
+    const auto balances = [](double a, double b) { return std::abs(a - b) < 1e-11; };
+    CHECK(balances(in + worm, c.load.values().back()));
+    CHECK(balances(std::abs(held - c.on_wheel), std::abs(out)));
+    CHECK(std::abs(held) <= c.friction * (1.0 + 1e-12));
+    CHECK(std::abs(worm) <= c.friction * (1.0 + 1e-12));
+    const double passed = std::abs(out) * c.gear.ratio;
+    if (in * out > 0.0) CHECK(passed <= std::abs(in) * (1.0 + 1e-9));
+  }
+}
+
+TEST_CASE("Lossy gear: one that jams ends the run with its name and the time, and what there is of the run") {
+  // |eta_b| r^2 J_2 = 2 > J_1: where the wheel brakes, nothing fits. It turns until the load on it changes its sign.
+  Model m = gear_train(1.0, 20.0, {.ratio = 1.0, .efficiency_forward = 0.8, .efficiency_backward = -0.1});
+  m.add<AppliedTorque>("load", {"a"}, {.table = TimeTable({0.0, 1.0}, {1.0, -1.0})});
+  try {
+    propagate(m.build(), {.tolerance = 1e-10, .t_end = 1.0});
+    FAIL("it did not jam");
+  } catch (const RunError& error) {
+    CAPTURE(error.what());
+    CHECK(std::string(error.what()).find("lossy gear: at t = 0.5 s: gear: ") == 0);
+    CHECK(error.summary.t_end == Approx(0.5));
+    CHECK(error.summary.steps > 0);
+    CHECK(error.summary.energy.input > 0.0);
+  }
+}
+
 TEST_CASE("Lossy gear: between events it costs what an ideal gear does") {
   const auto train = [](bool lossy, double brake) {
     Model m("cost");
