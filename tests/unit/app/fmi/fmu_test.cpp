@@ -1,4 +1,5 @@
 // The functions of an FMU's library, called as an importer does; tests/fmi has them called by FMPy.
+// Covers solvers/exact/start_state.hpp by the outputs before the first step.
 #include <drev/core/channel.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 
