@@ -51,9 +51,6 @@ int export_as_fmu(const CommandLine& line, const ModelRequest& model) {
         {kCommandLine, "--fmu", request.file, "", "must be the name of a file that ends in .fmu"});
   if (line.option("--out"))
     findings.push_back({kCommandLine, "--out", *line.option("--out"), "", "is given together with --fmu"});
-  if (line.list("--plugin"))
-    findings.push_back(
-        {kCommandLine, "--plugin", "", "", "is given together with --fmu: an FMU holds no plugins"});
   if (!findings.empty()) throw ModelError(std::move(findings));
   export_fmu(model, request);
   return kSuccess;

@@ -1,5 +1,6 @@
 #include "app/fmi/export_fmu.hpp"
 
+#include <drev/app/model_file/element_table.hpp>
 #include <drev/core/version.hpp>
 
 #include <algorithm>
@@ -136,6 +137,23 @@ void check_names(const ModelRequest& model) {
   if (!findings.empty()) throw ModelError(std::move(findings));
 }
 
+/// An FMU's library has drev's own elements alone: none of a plugin, and none that calls Python, which no file holds.
+void check_elements(const ModelCase& model_case) {
+  std::vector<Finding> findings;
+  for (const ElementInstance& placed : model_case.model.element_instances()) {
+    const auto types = element_types();
+    const auto type = std::find_if(types.begin(), types.end(), [&](const ElementType& one) {
+      return one.list(*placed.element, [](const ListFields&) {});
+    });
+    if (type == types.end() || !type->plugin.empty())
+      findings.push_back(
+          {model_case.model.name() + "/" + placed.name, "", "", "",
+           "cannot be in an FMU: " + (type == types.end() ? "no model file can hold the element"
+                                                          : "it is of the plugin " + type->plugin)});
+  }
+  if (!findings.empty()) throw ModelError(std::move(findings));
+}
+
 }  // namespace
 
 FmuLibrary::FmuLibrary() {
@@ -160,8 +178,9 @@ FmuLibrary::FmuLibrary() {
 }
 
 void export_fmu(const ModelRequest& model, const FmuRequest& request) {
-  const FmuLibrary library;
   check_names(model);
+  check_elements(model.model_case);
+  const FmuLibrary library;
   FmuInterface interface = interface_of(model, request);
   Contents resources = model_files(model, request, interface.model);
   resources["interface.toml"] = interface_text(interface);

@@ -12,6 +12,7 @@
 
 #include "app/fmi/fmu_built.hpp"
 #include "core/control/signal.hpp"
+#include "solvers/exact/start_state.hpp"
 
 namespace drev::app {
 
@@ -185,7 +186,7 @@ void FmuInstance::set_parameters(const std::vector<std::pair<std::size_t, std::s
     built_ = std::move(built);
     state_.parameters = std::move(all);
     hand_inputs_on();
-    find_acceleration();
+    evaluate_start(built_->system, state_.state);
     return;
   }
   // A speed that was not set follows from the parameters.
@@ -243,17 +244,20 @@ void FmuInstance::set_input_slopes(const unsigned* references, const double* val
     }
 }
 
-void FmuInstance::enter_initialization(double t_start, double t_stop, double tolerance) {
+void FmuInstance::enter_initialization(double t_start, std::optional<double> t_stop, double tolerance) {
   require(state_.mode == FmuMode::instantiated, "initialization",
           "begins once, after instantiation or reset");
   if (!std::isfinite(t_start)) throw FmuError("the start time must be finite");
+  if (t_stop && !(*t_stop >= t_start))
+    throw FmuError("the stop time is " + to_text(*t_stop) + " s; it must be >= the start time, " +
+                   to_text(t_start) + " s");
   if (!(tolerance == 0.0 ||
         (tolerance >= ExactOptions::kTolerance.low && tolerance <= ExactOptions::kTolerance.high)))
     throw FmuError("the tolerance is " + to_text(tolerance) + "; it must be " +
                    to_text(ExactOptions::kTolerance.low) + " to " + to_text(ExactOptions::kTolerance.high));
   state_.mode = FmuMode::initialization;
   state_.t_start = t_start;
-  state_.t_stop = std::isfinite(t_stop) ? t_stop : t_start;
+  state_.t_stop = t_stop && std::isfinite(*t_stop) ? t_stop : std::nullopt;
   state_.tolerance = tolerance;
   state_.started = false;
 }
@@ -293,7 +297,7 @@ void FmuInstance::start() {
     state_.state = State::initial(found.system, state_.t_start);
     start_warning_ = found.unsettled();
   }
-  find_acceleration();
+  evaluate_start(built_->system, state_.state);
   state_.started = true;
 }
 

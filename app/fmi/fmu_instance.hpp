@@ -67,9 +67,8 @@ class FmuInstance {
   /// The first time derivatives of inputs over the next step [unit of the input per s].
   void set_input_slopes(const unsigned* references, const double* values, std::size_t count);
 
-  /// tolerance: relative tolerance [-], 0: the default. t_start, t_stop [s]; t_stop <= t_start: there is no
-  /// stop time.
-  void enter_initialization(double t_start, double t_stop, double tolerance);
+  /// tolerance: relative tolerance [-], 0: the default. t_start, t_stop [s]; a stop time is none that steps may pass.
+  void enter_initialization(double t_start, std::optional<double> t_stop, double tolerance);
   /// Returns a warning of the start state; empty: none.
   std::string exit_initialization();
   /// A step from t over h [s], or to the first contact change if that is requested.
@@ -99,7 +98,6 @@ class FmuInstance {
   /// Finds the start state of the model with the current inputs.
   void start();
   void hand_inputs_on();
-  void find_acceleration();
   double reached(const SpeedInput& input, std::size_t i, double t) const;
   std::optional<double> first_change(const ExactOptions& options);
   double output(std::size_t place);

@@ -7,7 +7,7 @@ namespace drev::app {
 
 namespace {
 
-constexpr const char* kHead = "drev FMU state 1";
+constexpr const char* kHead = "drev FMU state 2";
 
 /// One list of fields serves for writing and reading. Sizes are checked against the bytes left before memory
 /// is allocated.
@@ -60,6 +60,17 @@ void flag_field(Reader& reader, bool& flag) {
   flag = byte == 1;
 }
 
+void optional_field(Writer& writer, const std::optional<double>& value) {
+  flag_field(writer, value.has_value());
+  writer.plain(value.value_or(0.0));
+}
+void optional_field(Reader& reader, std::optional<double>& value) {
+  bool there = false;
+  flag_field(reader, there);
+  reader.plain(value.emplace());
+  if (!there) value.reset();
+}
+
 template <class Stream, class Text>
 void text_field(Stream& stream, Text& text) {
   stream.size(text);
@@ -84,7 +95,7 @@ void fields(Stream& stream, StateType& s) {
   stream.plain(s.mode);
   flag_field(stream, s.started);
   stream.plain(s.t_start);
-  stream.plain(s.t_stop);
+  optional_field(stream, s.t_stop);
   stream.plain(s.tolerance);
   stream.size(s.parameters);
   for (auto& text : s.parameters) text_field(stream, text);

@@ -3,6 +3,7 @@
 #include <drev/core/state.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ struct InputValue {
 struct FmuState {
   FmuMode mode = FmuMode::instantiated;
   bool started = false;                 ///< true: the start state has been found
-  double t_start = 0.0, t_stop = 0.0;   ///< start and stop time [s]; t_stop <= t_start: no stop time
+  double t_start = 0.0;                 ///< start time [s]
+  std::optional<double> t_stop = {};    ///< stop time [s], which no step may pass
   double tolerance = 0.0;               ///< relative tolerance [-]; 0: the default of exact propagation
   std::vector<std::string> parameters;  ///< values as text, in the model's order
   std::vector<InputValue> torque_values, speed_values;  ///< inputs for the next step

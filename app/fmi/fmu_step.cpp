@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "app/fmi/fmu_built.hpp"
-#include "solvers/linear/sparse_cholesky.hpp"
+#include "solvers/exact/start_state.hpp"
 #include "solvers/run/run_verdict.hpp"
 
 namespace drev::app {
@@ -13,6 +13,8 @@ namespace drev::app {
 namespace {
 
 constexpr double kSameTime = 1e-9;  // difference of equal times relative to the communication step [-]
+constexpr double kSum =
+    1e-3;  // of the step: what an importer's sum of many steps may be off by at the stop time
 constexpr double kDefaultTolerance = 1e-10;
 constexpr double kChange =
     1e-4;  // of an input, for derivatives: relative, or in its unit where it is less than 1
@@ -42,25 +44,6 @@ void FmuInstance::hand_inputs_on() {
   built_->assembled = std::nan("");
 }
 
-/// Finds the acceleration a = M^-1 (p - C v - K z - B y).
-void FmuInstance::find_acceleration() {
-  State& s = state_.state;
-  const System& system = built_->system;
-  built_->assembler.set_time(s.t);
-  Vector p, part, rest = Vector::Zero(system.size());
-  p.setZero(system.size());
-  built_->assembler.external(s.z, s.v, p);
-  built_->assembler.add_scalar_forces(s.z, s.v, rest);
-  built_->assembler.multiply_stiffness(s.z, part);
-  rest += part;
-  built_->assembler.multiply_damping(s.v, part);
-  rest = p - rest - part;
-  SparseCholesky mass;
-  mass.factorize(system.pattern(), system.mass_values());
-  if (!mass.ok()) throw SolverError(system.name() + ": a node without inertia has no acceleration");
-  mass.solve(rest, s.a);
-}
-
 /// The deviation that speed input i has reached at time t, from which the motion of the next step continues.
 double FmuInstance::reached(const SpeedInput& input, std::size_t i, double t) const {
   const double ratio = built_->original.ratio(built_->original.node(interface_.speeds[i]));
@@ -88,6 +71,9 @@ FmuStepped FmuInstance::step(double t, double h, const FmuStepWishes& wishes) {
   if (!(std::abs(t - now) <= kSameTime * h + 1e-14 * std::abs(now)))
     throw FmuError("the communication point is " + to_text(t) + " s, but the last step ended at " +
                    to_text(now) + " s");
+  if (state_.t_stop && t + h > *state_.t_stop + kSum * h)
+    throw FmuError("the step from " + to_text(t) + " s to " + to_text(t + h) + " s passes the stop time, " +
+                   to_text(*state_.t_stop) + " s");
   if (!(t + h > t)) throw FmuError("a step of " + to_text(h) + " s does not advance the time " + to_text(t));
   require(inside_.state == nullptr, "a step", "is not made inside another");
   const FmuState before = state_;
@@ -100,8 +86,8 @@ FmuStepped FmuInstance::step(double t, double h, const FmuStepWishes& wishes) {
     }
     hand_inputs_on();
     // The tolerance of the whole simulation, divided among its steps.
-    const double span =
-        state_.t_stop > state_.t_start ? state_.t_stop - state_.t_start : built_->model_case.duration;
+    const double span = state_.t_stop && *state_.t_stop > state_.t_start ? *state_.t_stop - state_.t_start
+                                                                         : built_->model_case.duration;
     const double whole = state_.tolerance > 0.0 ? state_.tolerance : kDefaultTolerance;
     const Range range = ExactOptions::kTolerance;
     ExactOptions options{.tolerance = std::clamp(whole * std::min(1.0, h / span), range.low, range.high),
@@ -181,7 +167,7 @@ std::vector<double> FmuInstance::directional_derivative(const std::vector<unsign
         signal.value += side * change * seed[i];
       }
       hand_inputs_on();
-      find_acceleration();
+      evaluate_start(built_->system, state_.state);
       for (std::size_t i = 0; i < places.size(); ++i)
         slopes[i] += side * this->output(places[i]) / (2.0 * change);
     }

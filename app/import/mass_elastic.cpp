@@ -7,10 +7,10 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <sstream>
 
 #include "app/base/text_layout.hpp"
 #include "app/import/imported.hpp"
+#include "app/model_file/csv_rows.hpp"
 #include "app/model_file/writing/field_writer.hpp"
 
 namespace drev::app {
@@ -29,11 +29,6 @@ constexpr MassElasticColumn kColumns[] = {{"inertia", Dimension::inertia, 0.0},
                                           {"ratio", Dimension::none, -HUGE_VAL},
                                           {"diameter", Dimension::length, 0.0},
                                           {"bore", Dimension::length, 0.0}};
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\"");
-  return first == text.npos ? "" : text.substr(first, text.find_last_not_of(" \t\r\"") + 1 - first);
-}
 
 /// "; did you mean ...?" for a column by another spelling, or by its symbol in the literature; empty: it is like none.
 std::string column_hint(const std::string& cell) {
@@ -61,14 +56,18 @@ class MassElasticReader {
       : text_(text), file_(std::move(file)), model_(stem()) {}
 
   ImportedModel read() {
-    std::istringstream lines(text_);
+    CsvRows rows(text_);
     int number = 0;
-    for (std::string line; std::getline(lines, line);) {
-      ++number;
-      if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-      if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
-      std::vector<std::string> cells = split(line, line.find(';') != line.npos ? ';' : ',');
-      for (std::string& cell : cells) cell = trimmed(cell);
+    std::vector<CsvCell> row;
+    for (std::string why; why.empty() && rows.next(row, why);) {
+      number = row.front().line;
+      if (!why.empty()) {
+        fault(row.back().line, why);
+        break;
+      }
+      std::vector<std::string> cells;
+      for (const CsvCell& cell : row) cells.push_back(cell.text);
+      if (cells.front().starts_with('#') || cells == std::vector<std::string>{""}) continue;
       headers_.empty() ? read_head(cells, number) : read_row(cells, number);
     }
     if (headers_.empty()) fault(0, "has no line with the names of its columns");

@@ -76,12 +76,15 @@ struct FrictionHistory {
   static constexpr int kTorque = 0;  ///< lambda [N m or N]
   static constexpr int kState = 1;   ///< of FrictionState
   static constexpr int kHeat = 2;    ///< J, dissipated since the start of the run
-  static constexpr int kSize = 3;
+  /// Largest speed of the system so far [rad/s or m/s], which rounding of slip speeds is relative to: a train that
+  /// came to rest has no speed that tells.
+  static constexpr int kSpeedScale = 3;
+  static constexpr int kSize = 4;
   // Of a tie, kTorque is P and kState the shaft that drives (1 or 2). Of a gear loss also:
-  static constexpr int kTorqueIn = 3;   ///< tau_1 [N m]
-  static constexpr int kTorqueOut = 4;  ///< that shaft 2 gets [N m]
-  static constexpr int kPower = 5;      ///< loss [W]
-  static int size(const Friction& friction) { return friction.gear_loss() ? 6 : kSize; }
+  static constexpr int kTorqueIn = 4;   ///< tau_1 [N m]
+  static constexpr int kTorqueOut = 5;  ///< that shaft 2 gets [N m]
+  static constexpr int kPower = 6;      ///< loss [W]
+  static int size(const Friction& friction) { return friction.gear_loss() ? 7 : kSize; }
 };
 
 /// The tie of the gear whose loss is frictions()[loss]; -1 where it is none.

@@ -175,6 +175,9 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
   std::vector<GearLossRow> gears;
   if (point.state.v.size() > 0)
     speed_scale_ = std::max(speed_scale_, point.state.v.lpNorm<Eigen::Infinity>());
+  for (const FrictionTerm& term : system_.frictions())  // of the run that this one continues
+    speed_scale_ =
+        std::max(speed_scale_, point.state.history[term.history_begin + FrictionHistory::kSpeedScale]);
   for (std::size_t i = 0; i < n; ++i) {
     Contact& c = contacts_[i];
     const auto row = static_cast<Eigen::Index>(i);
@@ -192,11 +195,12 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     const double slip = slip_of(c, assembler, point.state.v);
     double size = size_of(c.z, point.state.v.data()) + std::abs(c.nominal * assembler.nominal().rate);
     for (const Entry& e : c.u) size += std::abs(e.coeff * assembler.prescribed(e.index).rate);
+    size = std::max(size, speed_scale_);
     c.open = c.capacity == std::array<double, 4>{} && !law(i).one_way();
     c.stuck = c.tied = false;
     if (c.open) continue;
     const bool locks = law(i).one_way() && slip < 0.0 && slip >= -kLocked * size;
-    if (at_rest[i] || locks || std::abs(slip) <= std::max(kAtRest * std::max(size, speed_scale_), slack)) {
+    if (at_rest[i] || locks || std::abs(slip) <= std::max(kAtRest * size, slack)) {
       resting.push_back(i);
       c.segment = 0;
       if (c.tie >= 0) gears.push_back(gear_at(i, 0.0, true));
@@ -269,6 +273,7 @@ void FrictionSeries::resolve(const Assembler& assembler, EvaluatedState& point,
     const int begin = system_.frictions()[i].history_begin;
     point.state.history[begin + FrictionHistory::kTorque] = torque[static_cast<Eigen::Index>(i)];
     point.state.history[begin + FrictionHistory::kState] = static_cast<int>(state(static_cast<int>(i)));
+    point.state.history[begin + FrictionHistory::kSpeedScale] = speed_scale_;
     contacts_[i].torque[0] = torque[static_cast<Eigen::Index>(i)];  // what add_to() judges a gear's slopes by
     if (contacts_[i].tie >= 0)
       note_gear(i, slip_of(contacts_[i], assembler, point.state.v), point.state.history);

@@ -3,6 +3,7 @@
 #include <drev/app/model_file/element_table.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <set>
 
@@ -37,6 +38,18 @@ std::string fault_of(const FmuDescription& fmu, const std::string& name, const c
     return "is of type " + v->type_name +
            "; drev sets Real, Integer, Boolean and String, and of FMI 3 Float64, Int32, "
            "Boolean and String";
+  return {};
+}
+
+/// What is wrong with a value for a parameter of that type, which no rounding may change; empty: nothing.
+std::string fault_of_value(Type type, double value) {
+  constexpr Range kInteger{std::numeric_limits<std::int32_t>::min(),
+                           std::numeric_limits<std::int32_t>::max()};
+  if (type == Type::integer &&
+      !(value == std::trunc(value) && value >= kInteger.low && value <= kInteger.high))
+    return "is of an integer, which must be a whole number from " + to_text(kInteger.low) + " to " +
+           to_text(kInteger.high);
+  if (type == Type::boolean && value != 0.0 && value != 1.0) return "is of a Boolean, which must be 0 or 1";
   return {};
 }
 
@@ -127,9 +140,12 @@ void Fmu::check(ParameterCheck& check) const {
   for (const Output& output : params_.outputs) look("outputs", output.variable, "output", true);
   for (const Parameter& p : params_.parameters) {
     if (!look("parameters", p.variable, "parameter", false)) continue;
-    const bool text = fmu.find(p.variable)->type == Type::text;
+    const Type type = fmu.find(p.variable)->type;
+    const bool text = type == Type::text;
     if (!text && !std::isfinite(p.value))
       check.fail("parameters", p.variable, "", "must have a value that is a finite number");
+    else if (const std::string fault = fault_of_value(type, p.value); !fault.empty())
+      check.fail("parameters", p.variable + " = " + to_text(p.value), "", fault);
     if (text && !std::isnan(p.value))
       check.fail("parameters", p.variable, "", "is a text: give text, not value");
   }

@@ -89,7 +89,7 @@ DREV_FMI int fmi2SetupExperiment(void* component, int tolerance_given, double to
   return guard(component, "fmi2SetupExperiment", [&](Component& c) {
     FmuState state = c.fmu->state();
     if (state.mode != FmuMode::instantiated) throw FmuError("it belongs ahead of initialization");
-    c.fmu->enter_initialization(t_start, stop_given != 0 ? t_stop : t_start,
+    c.fmu->enter_initialization(t_start, stop_given != 0 ? std::optional(t_stop) : std::nullopt,
                                 tolerance_given != 0 ? tolerance : 0.0);
     const FmuState& checked = c.fmu->state();
     state.t_start = checked.t_start;

@@ -64,7 +64,8 @@ DREV_FMI void fmi3FreeInstance(Instance instance) { remove_component(instance); 
 DREV_FMI int fmi3EnterInitializationMode(Instance instance, bool tolerance_given, double tolerance,
                                          double t_start, bool stop_given, double t_stop) {
   return guard(instance, "fmi3EnterInitializationMode", [&](Component& c) {
-    c.fmu->enter_initialization(t_start, stop_given ? t_stop : t_start, tolerance_given ? tolerance : 0.0);
+    c.fmu->enter_initialization(t_start, stop_given ? std::optional(t_stop) : std::nullopt,
+                                tolerance_given ? tolerance : 0.0);
     return kOk;
   });
 }

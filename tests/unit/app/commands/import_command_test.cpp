@@ -105,6 +105,10 @@ TEST_CASE("Faults of what is imported are named, all at once", "[import]") {
   CHECK(contains(said("x.csv", "node,inertia_kg_m2,stiffness_Nm_per_rad\na,1,2\nb,,\n"),
                  "x.csv: x/b: inertia = 0 kg m^2"));
   CHECK(contains(said("v.csv", ""), "has no line with the names"));
+  CHECK(contains(said("q.csv", "node,inertia_kg_m2,stiffness_Nm_per_rad\n\"a, b\",1,\"1,5\"\nc,1,\n"),
+                 "q.csv:2: stiffness_Nm_per_rad = 1,5, must be a number"));
+  CHECK(contains(said("r.csv", "node,inertia_kg_m2\n\"a,1\n"),
+                 "r.csv:2: the quotes that begin here do not end"));
   CHECK(contains(said("a.json", "{"), "is no JSON"));
   CHECK(contains(said("b.json", "[]"), "no JSON of openTorsion"));
   const std::string train =

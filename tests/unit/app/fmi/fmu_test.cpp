@@ -1,4 +1,5 @@
 // The functions of an FMU's library, called as an importer does; tests/fmi has them called by FMPy.
+// Covers solvers/exact/start_state.hpp by the outputs before the first step.
 #include <drev/core/channel.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 
@@ -108,6 +109,8 @@ TEST_CASE("An FMU under a torque that is held moves as the closed form says") {
   CHECK(fmi3DoStep(fmu, 0.5, 0.01, true, &event, &terminate, &early, &last) == 3);
   CHECK(log.last.find("communication point") != std::string::npos);
   CHECK(fmi3DoStep(fmu, 1.0, -1.0, true, &event, &terminate, &early, &last) == 3);
+  CHECK(fmi3DoStep(fmu, 1.0, 0.01, true, &event, &terminate, &early, &last) == 3);
+  CHECK(log.last.find("passes the stop time, 1 s") != std::string::npos);
   CHECK(fmi3EnterInitializationMode(fmu, false, 0.0, 0.0, false, 0.0) == 3);
   CHECK(fmi3EnterEventMode(fmu) == 3);
   CHECK(angle(fmu) == before);
@@ -170,7 +173,7 @@ TEST_CASE("A tunable parameter of an FMU changes while it runs, from where the m
   const unsigned stiffness = 1;
   const double torque = 0.8, soft = 1.0;
   fmu.set_reals(&kTorque, &torque, 1);
-  fmu.enter_initialization(0.0, 0.0, 1e-12);
+  fmu.enter_initialization(0.0, std::nullopt, 1e-12);
   fmu.exit_initialization();
   fmu.step(0.0, 0.25);
   fmu.set_reals(&stiffness, &soft, 1);
@@ -185,6 +188,29 @@ TEST_CASE("A tunable parameter of an FMU changes while it runs, from where the m
   CHECK(fmu.real(stiffness) == soft);
 }
 
+TEST_CASE("An FMU with dry friction knows its torque and acceleration before the first step") {
+  const test::TemporaryFolder resources;
+  const std::filesystem::path folder = resources / "";
+  std::ofstream(folder / "model.toml") << R"(format = 1
+[nodes]
+a = { initial_speed_rad_per_s = 5 }
+[elements]
+J = { type = "inertia", node = "a", inertia_kg_m2 = 1 }
+brake = { type = "brake", node = "a", torque_Nm = 3 }
+)";
+  std::ofstream(folder / "interface.toml") << interface_text(
+      {"model.toml", "", "token", {}, {}, {"a.acceleration_rad_per_s2", "brake.torque_Nm"}, {}, {}});
+  FmuInstance fmu(folder.string());
+  fmu.enter_initialization(1.0, 2.0, 0.0);
+  CHECK(fmu.real(1) == Approx(-3.0));
+  CHECK(fmu.real(2) == Approx(3.0));
+  fmu.exit_initialization();
+  CHECK(fmu.real(1) == Approx(-3.0));
+  fmu.reset();
+  CHECK_THROWS_WITH(fmu.enter_initialization(1.0, 0.5, 0.0),
+                    Catch::Contains("must be >= the start time, 1 s"));
+}
+
 TEST_CASE("Parameters of an FMU are set before its initialization ends, and refused out of their range") {
   FmuInstance fmu(oscillator());
   const unsigned stiffness = 1;
@@ -192,7 +218,7 @@ TEST_CASE("Parameters of an FMU are set before its initialization ends, and refu
   CHECK_THROWS_WITH(fmu.set_reals(&stiffness, &wrong, 1), Catch::Contains("0.1 to 100"));
   fmu.set_reals(&stiffness, &soft, 1);
   fmu.set_reals(&kTorque, &torque, 1);
-  fmu.enter_initialization(0.0, 0.0, 1e-12);
+  fmu.enter_initialization(0.0, std::nullopt, 1e-12);
   fmu.exit_initialization();
   const double slope = 2.0;
   fmu.set_input_slopes(&kTorque, &slope, 1);

@@ -144,6 +144,11 @@ TEST_CASE("What of an FMU does not fit the model is said with every variable") {
     CHECK_THAT(all, Catch::Contains(words));
   }
   CHECK_THAT(findings({.step = 0.1}), Catch::Contains("must have one a node"));
+  for (const double value : {3.4, 4294967299.0, -2147483649.0})  // no rounding into an Integer
+    CHECK_THAT(
+        findings(
+            {.step = 0.1, .outputs = {{"torque"}}, .parameters = {{.variable = "count", .value = value}}}),
+        Catch::Contains("count = " + to_text(value) + ", is of an integer, which must be a whole number"));
   // There is no library in it: said where a run begins.
   const Fmu fmu({.file = file, .step = 0.1, .outputs = {{"torque"}}});
   CHECK_THROWS_WITH(fmu.open(0.0, 1.0), Catch::Contains("no library for this machine"));

@@ -81,6 +81,10 @@ TEST_CASE("A plugin's element is listed, checked, linearised and run") {
 TEST_CASE("A plugin's element is exported, runs the same again, and is in the report") {
   const TemporaryFolder folder;
   const std::string file = (folder / "again.toml").string(), page = (folder / "page.html").string();
+  const Outcome fmu =
+      drev_command({"export", kDisc, "--plugin", kHardening, "--fmu", (folder / "d.fmu").string()});
+  CHECK(fmu.exit_code == 2);
+  CHECK(contains(fmu.err, "cannot be in an FMU: it is of the plugin " + kHardening));
   REQUIRE(drev_command({"export", kDisc, "--plugin", kHardening, "--out", file}).exit_code == 0);
   const std::string text = drev::test::read_file(file);
   CHECK(contains(text,

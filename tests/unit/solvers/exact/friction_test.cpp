@@ -371,3 +371,20 @@ TEST_CASE(
   // b alone: v = (1 - cos 2 pi t)/(2 pi), at rest at each whole second.
   CHECK(r.state.v[system.node_map(system.node("b")).unknown] == Approx(1.0 / kPi).epsilon(1e-12));
 }
+
+TEST_CASE("Friction: a run in parts, whose train has come to rest, ends as the whole one") {
+  Model m = two_inertias(1.0, 5.0, 2.0, 0.0);
+  m.add_node("wall");
+  m.hold("wall");
+  m.add<Clutch>("clutch", {"a", "b"}, {.torque = 8.0});
+  m.add<ShaftSpring>("spring", {"b", "wall"}, {.stiffness = 20.0});
+  m.add<Freewheel>("freewheel", {"a"}, {});
+  const System system = m.build();
+  const FrictionRun whole = ran_to(system, 5.0);
+  for (const int parts : {20, 50, 100}) {
+    State state = State::initial(system);
+    for (int i = 0; i < parts; ++i)
+      REQUIRE_NOTHROW(propagate(system, {.t_start = 5.0 * i / parts, .t_end = 5.0 * (i + 1) / parts}, state));
+    CHECK(state.z[0] == Approx(whole.state.z[0]).epsilon(1e-9));
+  }
+}
