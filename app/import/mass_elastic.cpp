@@ -10,7 +10,7 @@
 
 #include "app/base/text_layout.hpp"
 #include "app/import/imported.hpp"
-#include "app/model_file/csv_rows.hpp"
+#include "app/model_file/csv_table.hpp"
 #include "app/model_file/writing/field_writer.hpp"
 
 namespace drev::app {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/model_file/csv_rows.hpp"
-
 namespace drev::app {
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <drev/core/law/frequency_stiffness.hpp>
 #include <drev/core/units.hpp>
+#include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/method.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>

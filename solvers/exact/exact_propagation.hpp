@@ -18,6 +18,7 @@
 /// Limits: the step is bounded by the fastest mode (omega h <= 3), so that models with very stiff
 /// parts are expensive. Rounding grows with the motion's own sensitivity: past the horizon of a rattling
 /// system only statistics are comparable, with any method.
+#include <drev/core/error.hpp>
 #include <drev/core/range.hpp>
 #include <drev/core/state.hpp>
 #include <drev/solvers/run/run_summary.hpp>
@@ -58,6 +59,13 @@ struct ExactOptions {
 std::optional<std::string> why_not_exact(const System& system);
 /// Throws ModelError with all that propagate() refuses of a system, its options and its start.
 void check_propagation(const System& system, const ExactOptions& options, const State& state);
+
+/// A run that could not go on, with what there is of it; its status is success as long as it went.
+class RunError : public SolverError {
+ public:
+  RunError(const SolverError& error, RunSummary so_far) : SolverError(error), summary(std::move(so_far)) {}
+  RunSummary summary;
+};
 
 /// Runs from the state given and leaves the last state in it. Observers see the end of every step,
 /// contact changes and breakpoints among them, and points between, those they ask for among them: to watch

@@ -1,6 +1,5 @@
 #pragma once
 /// RunSummary: how a run ended and what it did.
-#include <drev/core/error.hpp>
 #include <drev/solvers/run/energy_balance.hpp>
 
 #include <string>
@@ -62,13 +61,6 @@ struct RunSummary {
   EnergyBalance energy;
   bool ok() const { return status == RunStatus::success; }
   std::string brief_report() const;
-};
-
-/// A run that could not go on, with what there is of it; its status is success as long as it went.
-class RunError : public SolverError {
- public:
-  RunError(const SolverError& error, RunSummary so_far) : SolverError(error), summary(std::move(so_far)) {}
-  RunSummary summary;
 };
 
 }  // namespace drev
