@@ -157,7 +157,7 @@ TEST_CASE("A method more than twenty times as dear as another that keeps the acc
   CHECK((other.z - exact.z).norm() < 1e-3 * exact.z.norm());
 }
 
-TEST_CASE("A long chain with one stiff and strongly damped shaft gives way to implicit steps") {
+TEST_CASE("A long chain with one stiff and strongly damped shaft gives way to implicit steps", "[once]") {
   constexpr int kDiscs = 1000;
   Model m("long chain");
   for (int i = 0; i < kDiscs; ++i) {

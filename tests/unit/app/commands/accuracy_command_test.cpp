@@ -40,7 +40,7 @@ TEST_CASE("An accuracy asked for: published times of contact within the stated e
   CHECK(contains(read_file(folder / "out/report.html"), R"("name":"peak deflection")"));
 }
 
-TEST_CASE("Contacts and mesh forces carry their errors, in JSON, text and report") {
+TEST_CASE("Contacts and mesh forces carry their errors, in JSON, text and report", "[once]") {
   const drev::test::TemporaryFolder folder;
   const auto words = [&](const char* tolerance, const char* value) {
     return std::vector<std::string>{"run",     "gear_drive", "--set", "duration_s=0.05",
@@ -77,7 +77,8 @@ TEST_CASE("Contacts and mesh forces carry their errors, in JSON, text and report
   CHECK(contains(text, "\n    +-   "));
 }
 
-TEST_CASE("An accuracy that rattling does not allow is refused point by point, and statistics given") {
+TEST_CASE("An accuracy that rattling does not allow is refused point by point, and statistics given",
+          "[once]") {
   const auto run =
       drev_command({"run", "gear_drive", "--set", "duration_s=0.3", "--accuracy", "1e-3", "--json"});
   INFO(run.err);
@@ -116,7 +117,7 @@ TEST_CASE("The error stated of a torque that is a function of time covers what s
         peak.at("error").get<double>());
 }
 
-TEST_CASE("Methods of high order come to an accuracy by their tolerance, others by their step") {
+TEST_CASE("Methods of high order come to an accuracy by their tolerance, others by their step", "[once]") {
   const Json exact =
       figure(Json::parse(drev_command({"run", "two_mass_backlash", "--accuracy", "1e-10", "--json"}).out),
              "peak deflection");

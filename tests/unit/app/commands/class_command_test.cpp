@@ -233,7 +233,7 @@ TEST_CASE("A class calculation of teeth as they are: the worst stable motion, fi
 }
 
 TEST_CASE("A limit of heat where only a run in time answers is not decided: text, JSON and report say so",
-          "[class]") {
+          "[class][once]") {
   const drev::test::TemporaryFolder folder;
   std::ofstream(folder / "pair.toml") << kPairWithMachine
                                       << "[class.sections]\n"
@@ -411,7 +411,8 @@ TEST_CASE("drev report --class writes what drev class --report does", "[class]")
         by_class);
 }
 
-TEST_CASE("A run counts load cycles of sections with an S-N line and of channels asked for", "[class]") {
+TEST_CASE("A run counts load cycles of sections with an S-N line and of channels asked for",
+          "[class][once]") {
   const nlohmann::json run = class_json_of({"run", kGensetFile, "--step", "1e-5", "--duration", "0.3",
                                             "--settle", "0.1", "--rainflow", "coupling.torque_Nm"});
   CHECK(run.at("t_end_s") == 0.3);

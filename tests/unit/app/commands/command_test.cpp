@@ -93,7 +93,7 @@ TEST_CASE("Modes of small and of free models need no count") {
             .size() == 3);
 }
 
-TEST_CASE("Advice: every model tried, the cheapest that holds") {
+TEST_CASE("Advice: every model tried, the cheapest that holds", "[once]") {
   const std::vector<std::string> words{"advise",
                                        "gear_drive",
                                        "--set",

@@ -74,7 +74,8 @@ TEST_CASE("The absorber that stops a disc is found by a search", "[once]") {
 }
 
 TEST_CASE(
-    "All combinations are computed where there are no more than the variants allowed, the best is certain") {
+    "All combinations are computed where there are no more than the variants allowed, the best is certain",
+    "[once]") {
   const TemporaryFolder folder;
   const std::string file = absorber_file(folder);
   const auto found = drev_command(search(

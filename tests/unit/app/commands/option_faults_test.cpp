@@ -144,7 +144,7 @@ const std::vector<OptionFault>& faults() {
 
 }  // namespace
 
-TEST_CASE("Faults of the command line are named") {
+TEST_CASE("Faults of the command line are named", "[once]") {
   for (const OptionFault& fault : faults()) {
     std::string line = "drev";
     for (const std::string& word : fault.words) line += " " + word;

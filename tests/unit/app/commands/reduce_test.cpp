@@ -55,8 +55,8 @@ std::vector<std::vector<double>> rows_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE(
-    "Option --reduce: what is written is within the error stated of the whole model by implicit steps") {
+TEST_CASE("Option --reduce: what is written is within the error stated of the whole model by implicit steps",
+          "[once]") {
   const TemporaryFolder folder;
   const std::string file = (folder / "train.toml").string();
   std::ofstream(file) << train(40, 0.2);

@@ -190,7 +190,7 @@ TEST_CASE(
   CHECK(contains(run.out, "0 of 3 succeeded"));
 }
 
-TEST_CASE("Parameters varied: every combination, with one table of figures") {
+TEST_CASE("Parameters varied: every combination, with one table of figures", "[once]") {
   const TemporaryFolder folder;
   const std::string out = (folder / "r").string();
   const auto run =

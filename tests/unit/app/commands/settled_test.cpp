@@ -64,8 +64,8 @@ Ran run_of(const std::string& model, std::vector<std::string> words = {}) {
 
 }  // namespace
 
-TEST_CASE(
-    "Figures from rest hold the start, from the periodic state, or settled, they are the closed form's") {
+TEST_CASE("Figures from rest hold the start, from the periodic state, or settled, they are the closed form's",
+          "[once]") {
   const Ran rest = run_of(disc("8", ""));
   REQUIRE(rest.exit_code == 0);
   const double from_rest = rest.json["results"]["max_torque_Nm"];
@@ -124,7 +124,8 @@ TEST_CASE("A run that settles but has no whole cycle left says just that") {
                  "the run of 3.4 s does not settle"));
 }
 
-TEST_CASE("A periodic start that no run settles on is no steady state: a warning in text, JSON and report") {
+TEST_CASE("A periodic start that no run settles on is no steady state: a warning in text, JSON and report",
+          "[once]") {
   // A disc rattles in a wide gap without ever repeating.
   const TemporaryFolder folder;
   const std::string model = (folder / "m.toml").string(), report = (folder / "r.html").string();
@@ -411,7 +412,7 @@ TEST_CASE("A torque of which rounding leaves little is printed with what it leav
   CHECK(contains(run.text.substr(run.text.find("Largest torque")), " +- "));
 }
 
-TEST_CASE("Advice is of the figures that a run has: from its start, and settled") {
+TEST_CASE("Advice is of the figures that a run has: from its start, and settled", "[once]") {
   const TemporaryFolder folder;
   const std::string path = (folder / "m.toml").string();
   for (const char* run :

@@ -73,7 +73,7 @@ TEST_CASE("A linear sweep of a train with a mode that grows says so in text, JSO
   CHECK(grows.at("frequency_Hz").get<double>() == Approx(4.4900995 / 6.283185307).epsilon(1e-7));
 }
 
-TEST_CASE("A motion within a gap, and a train that nothing excites: the sweep says which", "[sweep]") {
+TEST_CASE("A motion within a gap, and a train that nothing excites: the sweep says which", "[sweep][once]") {
   const drev::test::TemporaryFolder folder;
   const std::string model = (folder / "gap.toml").string();
   const auto sweep = [&](const std::string& train) {

@@ -41,7 +41,7 @@ Json figure(const Json& summary) {
 
 }  // namespace
 
-TEST_CASE("Intervals of a saltelli sample hold the true mean and median as often as they say") {
+TEST_CASE("Intervals of a saltelli sample hold the true mean and median as often as they say", "[once]") {
   const drev::test::TemporaryFolder folder;
   const std::string path = product_model(folder);
   // The mean is 1; the median is by 2e7 random numbers, to 2e-4.

@@ -72,7 +72,7 @@ TEST_CASE("The report of a sweep holds what its JSON says", "[sweep][report]") {
   CHECK(contains(refused.err, "--report"));
 }
 
-TEST_CASE("The report of a sweep with contacts holds its branches and limits", "[sweep][report]") {
+TEST_CASE("The report of a sweep with contacts holds its branches and limits", "[sweep][report][once]") {
   const drev::test::TemporaryFolder folder;
   const std::string model = (folder / "pair.toml").string(), file = (folder / "branches.html").string();
   std::ofstream(model) << read_file(DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml");
@@ -123,7 +123,7 @@ TEST_CASE("Text, JSON and report name the shaft whose speeds those of a sweep ar
 }
 
 TEST_CASE("Largest half range, error of a fold and sign of a mean are the same in text, JSON and report",
-          "[sweep][report]") {
+          "[sweep][report][once]") {
   const drev::test::TemporaryFolder folder;
   const std::string file = (folder / "pair.html").string();
   std::vector<std::string> words{"sweep",    DREV_SOURCE_DIR "/models/gear_pair/gear_pair.toml",

@@ -25,7 +25,7 @@ nlohmann::json report_of(const std::string& file, const std::string& duration) {
 
 }  // namespace
 
-TEST_CASE("The report draws an engine with a rubber damper", "[report]") {
+TEST_CASE("The report draws an engine with a rubber damper", "[report][once]") {
   const drev::test::TemporaryFolder folder;
   const std::string file = (folder / "engine.toml").string();
   std::ofstream(file) << R"(format = 1
@@ -66,7 +66,7 @@ record = ["damper.torque_Nm", "damper.deflection_rad", "engine_1.torque_Nm"]
     CHECK(names.contains(name));
 }
 
-TEST_CASE("The report draws a planetary train and its torques by expressions", "[report]") {
+TEST_CASE("The report draws a planetary train and its torques by expressions", "[report][once]") {
   const nlohmann::json data = report_of(DREV_SOURCE_DIR "/models/wind_turbine/wind_turbine.toml", "0.05");
   // Sun and ring are in mesh with each planet, which its carrier carries; of the rigid set sun and ring stand beside the carrier.
   std::map<std::string, int> joints;
@@ -96,7 +96,7 @@ TEST_CASE("The report draws a planetary train and its torques by expressions", "
   CHECK(data["modes"][0]["frequency_Hz"].get<double>() == Approx(1.9675).epsilon(1e-4));
 }
 
-TEST_CASE("The report draws gears on bearings, with their modes and channels", "[report]") {
+TEST_CASE("The report draws gears on bearings, with their modes and channels", "[report][once]") {
   const drev::test::TemporaryFolder folder;
   const std::string file = (folder / "gears.toml").string();
   std::ofstream(file) << R"(format = 1
@@ -160,7 +160,8 @@ record = ["mesh.force_N", "mesh.deflection_m", "centre_1.position_m"]
                                                     {"stored", "J"}});
 }
 
-TEST_CASE("The report draws a coupling with play beside modal damping, whose heat it gives", "[report]") {
+TEST_CASE("The report draws a coupling with play beside modal damping, whose heat it gives",
+          "[report][once]") {
   const drev::test::TemporaryFolder folder;
   const std::string file = (folder / "play.toml").string();
   std::ofstream(file) << R"(format = 1

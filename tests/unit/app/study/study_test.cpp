@@ -114,7 +114,7 @@ TEST_CASE("Study: a group that is none lists those that are") {
     CHECK(contains(run.err, part));
 }
 
-TEST_CASE("Study: superposed cylinders are the steady state of a run in time") {
+TEST_CASE("Study: superposed cylinders are the steady state of a run in time", "[once]") {
   const int cylinders = 6;
   const ParameterValues parameters{{"cylinders", "6"},    {"drive", "held"},
                                    {"damping", "case_1"}, {"loads", "source"},

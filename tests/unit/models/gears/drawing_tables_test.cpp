@@ -51,7 +51,7 @@ std::vector<Pair> all_pairs() {
 
 }  // namespace
 
-TEST_CASE("One pair at the pitch point over bores, windup, plane stress and loads", "[gears]") {
+TEST_CASE("One pair at the pitch point over bores, windup, plane stress and loads", "[gears][once]") {
   struct Row {
     std::array<double, 3> bores;  // .3, .5, .7
     double unwound, plane_stress;

@@ -108,7 +108,8 @@ TEST_CASE(
 
 TEST_CASE(
     "Peaks of mesh forces whose stiffness swings faster than any mode are those of the motion sampled "
-    "finely") {
+    "finely",
+    "[once]") {
   struct Case {
     const char* name;
     MeshStiffness stiffness;

@@ -103,7 +103,7 @@ TEST_CASE(
 }
 
 TEST_CASE("A slope that jumps where its law does not say it costs digits of a multiplier, not all of them",
-          "[nonlinear_sweep]") {
+          "[nonlinear_sweep][once]") {
   // x'' + c max(x', 0) + x = cos t: the panel in which the slope jumps is bridged by a polynomial.
   struct Row {
     double damping, multiplier;

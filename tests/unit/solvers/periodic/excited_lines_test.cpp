@@ -69,7 +69,7 @@ const SweptMotion& motion_of(const NonlinearSweep& sweep) {
 }  // namespace
 
 TEST_CASE("A load order that is harmonic 332 of the cycle is in the motion, and among its orders",
-          "[nonlinear_sweep]") {
+          "[nonlinear_sweep][once]") {
   const NonlinearSweep sweep = sweep_of({});
   CHECK(sweep.turns == Approx(83.0 / 3.0));
   CHECK_FALSE(sweep.excess.found);
@@ -105,7 +105,7 @@ TEST_CASE("A small load order beyond a motion's harmonics is in its error until 
   CHECK(few.error == Approx(0.0069171874 / 61.864).epsilon(1e-3));
 }
 
-TEST_CASE("A load that follows the twist leaves a high order in the motion", "[nonlinear_sweep]") {
+TEST_CASE("A load that follows the twist leaves a high order in the motion", "[nonlinear_sweep][once]") {
   const NonlinearSweep sweep = sweep_of({.motor = {6.0, 4.0, 0.0}, .motor_feedback = true});
   // What the twist of 1e-3 rad changes of the load is a few thousandths of it.
   CHECK(motion_of(sweep).half_range()[0] == Approx(8.3088405223).epsilon(5e-3));

@@ -115,7 +115,8 @@ std::vector<SweptMotion> motions_at(const NonlinearSweep& sweep, double speed) {
 
 }  // namespace
 
-TEST_CASE("Gear pair with backlash: a whole branch, its folds to 8 digits, stability", "[nonlinear_sweep]") {
+TEST_CASE("Gear pair with backlash: a whole branch, its folds to 8 digits, stability",
+          "[nonlinear_sweep][once]") {
   const std::vector<BranchRow> rows = branch_rows("gear_pair_branch.csv", 6, 0.62, 1.58);
   std::set<double> speeds{0.62, 1.58};
   for (const BranchRow& row : rows) speeds.insert(row.speed);
@@ -265,7 +266,7 @@ TEST_CASE("Mathieu's equation: multipliers of a stiffness that varies smoothly, 
 }
 
 TEST_CASE("A train of 24 meshes: each is the closed form while its contact holds, of 51 it is refused",
-          "[nonlinear_sweep]") {
+          "[nonlinear_sweep][once]") {
   // x'' + c x' + k x = mean + error w^2 cos wt, each of a wheel of its own on one pinion.
   const auto train = [](int meshes) {
     Model m("wheels");
@@ -391,7 +392,7 @@ TEST_CASE("Faults of a nonlinear sweep are listed at once", "[nonlinear_sweep]")
 }
 
 TEST_CASE("What a sweep of contacts comes to at each speed: the worst of its stable motions",
-          "[nonlinear_sweep]") {
+          "[nonlinear_sweep][once]") {
   const NonlinearSweep sweep =
       sweep_nonlinear(Pair{}.build(), {.speeds = {0.60, 0.72, 0.80, 0.84, 1.0}, .tolerance = 1e-4});
   const WorstMotions worst = worst_motions(sweep);

@@ -296,7 +296,7 @@ TEST_CASE("What has no periodic response, or none that can be found, says why") 
   CHECK_THROWS_AS(solve_periodic(p.model().build(), {.channels = {"dics.angle_rad"}}), ModelError);
 }
 
-TEST_CASE("Sweep over speeds: the worst speed of a damped oscillator is sqrt(k/J - c^2/(2 J^2))") {
+TEST_CASE("Sweep over speeds: the worst speed of a damped oscillator is sqrt(k/J - c^2/(2 J^2))", "[once]") {
   Driven p{.harmonics = {{1.0, 5.0, 0.0}}, .mean = 0.0};
   std::vector<double> speeds;
   for (double w = 5.0; w < 41.0; w += 2.5) speeds.push_back(w);

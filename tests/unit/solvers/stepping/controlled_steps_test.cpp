@@ -266,7 +266,8 @@ TEST_CASE("The scales of a run far longer than its periods are found in steps th
   CHECK(run.steps > 100);
 }
 
-TEST_CASE("Controlled steps: a short circuit far shorter than the steps of the run is not passed over") {
+TEST_CASE("Controlled steps: a short circuit far shorter than the steps of the run is not passed over",
+          "[once]") {
   // J w' = -A exp(-t/T) sin(Omega t) from its start on: w = -A Omega/(J (Omega^2 + 1/T^2)) at the end.
   const double torque = 1000.0, decay = 0.01, omega = kTwoPi * 50.0;
   const double expected = -torque * omega / (omega * omega + 1.0 / (decay * decay));
