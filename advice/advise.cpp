@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <utility>
 
 #include "advice/evidence.hpp"
 #include "advice/recipe.hpp"
@@ -47,14 +48,7 @@ double settled_from(const ModelCase& model_case, const System& in_start) {
 class Ladder {
  public:
   Ladder(const ModelCase& model_case, const AdviseOptions& options)
-      : model_case_(model_case),
-        options_(options),
-        figure_(figure_options(model_case, model_case.model.build(), options)),
-        full_(started(model_case.model.build(), figure_)),
-        evidence_(full_) {
-    figure_.from = std::max(figure_.from, settled_from(model_case, full_));
-    figure_.watch = evidence_.channels();
-  }
+      : Ladder(model_case, options, model_case.model.build()) {}
 
   Advice run() {
     advice_ = {.figure = options_.figure,
@@ -291,6 +285,16 @@ class Ladder {
     advice_.chosen = advice_.rungs.size() - 1;
     while (!advice_.best().holds || advice_.best().seconds > kAsCheap * least) --advice_.chosen;
     advice_.sentence = evidence_.sentence(advice_);
+  }
+
+  Ladder(const ModelCase& model_case, const AdviseOptions& options, System built)
+      : model_case_(model_case),
+        options_(options),
+        figure_(figure_options(model_case, built, options)),
+        full_(started(std::move(built), figure_)),
+        evidence_(full_) {
+    figure_.from = std::max(figure_.from, settled_from(model_case, full_));
+    figure_.watch = evidence_.channels();
   }
 
   const ModelCase& model_case_;

@@ -303,7 +303,6 @@ void FrictionSeries::take(const std::vector<std::size_t>& of, const FrictionSolu
       c.root = true;
       c.stuck = c.tied = false;
       const double a = solution.a[row];
-      bool at_high = solution.side[k] > 0;
       if (!between && std::abs(a) > problem.rounding[row]) {
         c.sign = a > 0.0 ? 1 : -1;
         c.segment = 0;
@@ -311,16 +310,18 @@ void FrictionSeries::take(const std::vector<std::size_t>& of, const FrictionSolu
       }
       factor_stuck();
       const bool dependent = depends_on_stuck(of[k]);
+      int bound = solution.side[k];
       // A torque that stands on its bound may count as between where others can carry the load alone.
-      const bool at_low = between && solution.lambda[row] <= problem.low[row];
-      const bool on_bound = !between || at_low || solution.lambda[row] >= problem.high[row];
-      at_high = at_high || (between && on_bound && !at_low);
-      c.tied = dependent && on_bound;
+      if (between && dependent)
+        bound = solution.lambda[row] <= problem.low[row]    ? -1
+                : solution.lambda[row] >= problem.high[row] ? 1
+                                                            : 0;
+      c.tied = dependent && bound != 0;
       c.stuck = !c.tied;
-      c.root_bound = between && c.stuck ? 0 : at_high ? 1 : -1;
-      c.sign = at_high ? 1 : -1;
+      c.root_bound = bound;
+      c.sign = bound > 0 ? 1 : -1;
       const Limits most = limits(of[k], c.loose);
-      c.bound = at_high ? most.high : most.low;
+      c.bound = bound > 0 ? most.high : most.low;
       if (c.stuck) stuck_.push_back(of[k]);
     }
 }
