@@ -1,6 +1,5 @@
 #include <drev/advice/advise.hpp>
 #include <drev/core/units.hpp>
-#include <drev/solvers/modes/damped_modes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "advice/evidence.hpp"
 #include "advice/recipe.hpp"
 #include "advice/simplify.hpp"
+#include "models/figure_span.hpp"
 
 namespace drev {
 
@@ -30,19 +30,7 @@ double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_P
 
 /// Time of the turn after which the loads repeat themselves; 0: not known.
 double turn_time(const ModelCase& model_case, const System& system) {
-  const auto& reference = system.reference();
-  if (!reference || !(model_case.static_turn > 0.0)) return 0.0;
-  const double speed = std::abs(reference->at(model_case.duration).rate);
-  return speed > 0.0 ? model_case.static_turn / speed : 0.0;
-}
-
-/// From when on the figures of a run from this start count, as the model case has it [s].
-double settled_from(const ModelCase& model_case, const System& in_start) {
-  if (!model_case.settle) return 0.0;
-  if (model_case.settle->time) return *model_case.settle->time;
-  if (model_case.start == Start::periodic) return 0.0;
-  const double time = settling_time(in_start).time;
-  return time + turn_time(model_case, in_start) < model_case.duration ? time : 0.0;
+  return time_of_turn(system, model_case.static_turn, model_case.duration);
 }
 
 class Ladder {
@@ -293,7 +281,9 @@ class Ladder {
         figure_(figure_options(model_case, built, options)),
         full_(started(std::move(built), figure_)),
         evidence_(full_) {
-    figure_.from = std::max(figure_.from, settled_from(model_case, full_));
+    const FigureSpan span = figure_span(model_case.settle, full_, model_case.start == Start::periodic,
+                                        model_case.duration, turn_time(model_case, full_));
+    figure_.from = std::max(figure_.from, span.from);
     figure_.watch = evidence_.channels();
   }
 

@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace drev {
@@ -56,7 +55,6 @@ const std::vector<ModelEntry>& ready_made_models();
 /// By name; throws ModelError with the nearest name.
 const ModelEntry& find_model(const std::string& name);
 
-using ParameterValues = std::vector<std::pair<std::string, std::string>>;
 /// The defaults of a model with these parameters in their place.
 Parameters values_of(const ModelEntry& entry, const ParameterValues& parameters);
 /// A ready-made model with parameters; throws ModelError for a name or parameters that cannot be.

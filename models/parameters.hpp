@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace drev {
@@ -24,6 +25,9 @@ struct Parameter {
   /// Range as text: "6 to 10", "gears | held | free", ...
   std::string range() const;
 };
+
+/// Parameters that differ from their defaults: name and value.
+using ParameterValues = std::vector<std::pair<std::string, std::string>>;
 
 /// Values for the parameters of one model: the defaults, then what was set.
 class Parameters {

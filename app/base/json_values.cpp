@@ -11,6 +11,15 @@ Json parameter_value(const Parameter& parameter, const std::string& text) {
   return text;
 }
 
+Json values_object(const ParameterValues& values) {
+  Json object = Json::object();
+  for (const auto& [name, text] : values) {
+    double value = 0.0;
+    object[name] = read_number(text, value) ? number(value) : Json(text);
+  }
+  return object;
+}
+
 Json parameters_object(const Parameters& parameters) {
   Json object = Json::object();
   for (std::size_t i = 0; i < parameters.known().size(); ++i)

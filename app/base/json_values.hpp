@@ -30,6 +30,9 @@ inline Json text_or_null(const std::string& text) { return text.empty() ? Json(n
 /// Numbers as numbers, everything else as text.
 Json parameter_value(const Parameter& parameter, const std::string& text);
 
+/// {name: value, ...}: numbers as numbers, everything else as text.
+Json values_object(const ParameterValues& values);
+
 /// {name: value, ...}
 Json parameters_object(const Parameters& parameters);
 

@@ -102,15 +102,6 @@ OptimumRequest request_optimum(const CommandLine& line) {
   return {std::move(*study), std::move(options)};
 }
 
-Json values_object(const ParameterValues& values) {
-  Json object = Json::object();
-  for (const auto& [name, text] : values) {
-    double value = 0.0;
-    object[name] = drev::read_number(text, value) ? number(value) : Json(text);
-  }
-  return object;
-}
-
 std::string values_text(const ParameterValues& values) {
   std::vector<std::string> parts;
   for (const auto& [name, text] : values) parts.push_back(name + "=" + text);

@@ -192,8 +192,8 @@ void check_stability(const System& system, const Method& method, std::vector<Fin
 }
 
 /// Options of the file's run that the command line leaves open. Any say on the method there is the whole say.
-void take_file_options(const ModelRequest& model, CommandLine& line) {
-  const RunOptions file = model.file->run_options(model.parameters);
+void take_file_options(const ModelFile& model, const Parameters& parameters, CommandLine& line) {
+  const RunOptions file = model.run_options(parameters);
   const auto given = [&](const char* option) { return line.options.contains(option); };
   const auto take = [&](const char* option) {
     const auto value = file.values.find(option);
@@ -210,6 +210,14 @@ void take_file_options(const ModelRequest& model, CommandLine& line) {
   if (const auto at = file.places.find("--step"); at != file.places.end() && !given("--step"))
     line.from_file["--step"] = at->second.text() + ": run";
   if (given("--out") || given("--report") || line.keeps_history) take("--every");
+}
+
+/// The same of a file whose model cannot be built, so that what is wrong with its run is said at once.
+void take_options_of_refused(CommandLine& line) try {
+  if (const auto file = open_model_file(line, line.option("--run").value_or("")))
+    take_file_options(*file, Parameters(file->entry().name, file->entry().parameters), line);
+} catch (const ModelError&) {
+  // build_model() says it
 }
 
 /// Gives the model the duration asked for. Where a parameter is the duration, it has this value then, so that what is
@@ -290,7 +298,8 @@ RunRequest request_run(const CommandLine& given) {
   std::vector<Finding> findings = line.findings;
   const std::size_t before = findings.size();
   std::optional<ModelRequest> model = build_model(line, findings);
-  if (model && model->file) take_file_options(*model, line);
+  if (model && model->file) take_file_options(*model->file, model->parameters, line);
+  if (!model) take_options_of_refused(line);
   const bool parameters_right = findings.size() == before;
 
   if (const auto text = line.option("--duration")) {

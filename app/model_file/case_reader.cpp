@@ -224,7 +224,7 @@ class CaseReader {
                               &kept.fields);
         });
         for (const char* key : {"node", "nodes"})
-          if (const Entry* e = table.find(key)) kept.fields[key] = e->value.at;
+          if (const Entry* e = table.find(key)) kept.fields[key] = {e->value.at};
       } catch (const ModelError& error) {
         for (const Finding& finding : error.findings())
           context_.findings.push_back(placed(finding, kept, where));

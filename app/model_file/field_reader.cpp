@@ -137,7 +137,7 @@ class FieldReader final : public Fields {
                     value.items[i], where, kind, {}, [&](Fields& f) { list(f, i); }, context_, &inside) &&
                 right;
         const std::string row = name + "[" + std::to_string(i + 1) + "]";
-        inside_[row] = value.items[i].at;
+        inside_[row] = {value.items[i].at};
         keep_inside(row, inside);
       } else {
         context_.findings.push_back(
@@ -187,13 +187,20 @@ class FieldReader final : public Fields {
 
   FieldPlaces places() const {
     FieldPlaces all = inside_;
-    for (const auto& [name, found] : keys_.all()) all[name] = found.entry->at;
+    for (const auto& [name, found] : keys_.all()) all[name] = {found.entry->at, given(found)};
     return all;
   }
 
  private:
   void keep_inside(const std::string& name, const FieldPlaces& inside) {
     for (const auto& [field, at] : inside) inside_[name + "." + field] = at;
+  }
+  static std::string given(const Found& found) {
+    const Value& value = found.entry->value;
+    if (value.numeric() && found.factor != 1.0) return found.entry->key + " = " + to_text(value.number);
+    if (value.is(Value::Kind::text) && !found.unit.empty())
+      return found.entry->key + " = \"" + value.text + "\"";
+    return {};
   }
   std::string place(const Found& found) const { return where_ + "." + found.entry->key; }
   void blame(const Found& found, const std::string& sentence) {

@@ -9,8 +9,14 @@
 
 namespace drev::app {
 
-/// Where the fields of a table stand, by name, for findings that come later.
-using FieldPlaces = std::map<std::string, Position>;
+/// Where a field of a table stands, and how it was given where that is no number in SI: "pressure_angle_deg = 95".
+struct FieldPlace {
+  Position at;
+  std::string given = {};
+};
+
+/// By name, for findings that come later.
+using FieldPlaces = std::map<std::string, FieldPlace>;
 
 /// Reads `table`, which says what the sentence calls `where` ("elements.shaft"). Keys in `others` are the
 /// caller's. False if anything was wrong.

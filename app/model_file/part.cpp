@@ -34,10 +34,10 @@ Finding placed(Finding finding, const Part& part, const std::string& place) {
                                                                {"t_0", "run_up"},
                                                                {"t_1", "run_up"}};
   const std::string stem = finding.parameter.substr(0, finding.parameter.find_first_of(".["));
-  Position best = part.at;
+  FieldPlace best{part.at};
   const auto try_name = [&](const std::string& name) {
-    for (const auto& [field, position] : part.fields)
-      if (field.starts_with(name) && field.find('.') == std::string::npos) best = position;
+    for (const auto& [field, at] : part.fields)
+      if (field.starts_with(name) && field.find('.') == std::string::npos) best = at;
   };
   const auto [first, last] = renamed.equal_range(stem);
   for (auto other = first; other != last; ++other) try_name(other->second);
@@ -51,14 +51,15 @@ Finding placed(Finding finding, const Part& part, const std::string& place) {
                                 : finding.parameter;
   const bool found = exact != part.fields.end() && whole == stem;
   for (const std::string& name : {finding.parameter.substr(0, finding.parameter.find(']') + 1), whole})
-    for (const auto& [field, position] : part.fields)
-      if (!found && !name.empty() && (field == name || field.ends_with("." + name))) best = position;
+    for (const auto& [field, at] : part.fields)
+      if (!found && !name.empty() && (field == name || field.ends_with("." + name))) best = at;
   // A file cannot say NaN: what has this value, and stands nowhere, was not given.
-  if (finding.value == to_text(kNotGiven) && best.text() == part.at.text()) {
+  if (finding.value == to_text(kNotGiven) && best.at.text() == part.at.text()) {
     finding.value.clear();
     finding.range = "is missing: " + finding.range;
   }
-  finding.place = best.text() + ": " + place;
+  if (!best.given.empty() && !finding.value.empty()) finding.range += " (given as " + best.given + ")";
+  finding.place = best.at.text() + ": " + place;
   return finding;
 }
 

@@ -96,18 +96,15 @@ RunSection::RunSection(const Document& document, const std::string& run, ReadCon
       read_fields(named->value, "run." + run, NodeKind::rotational, {"parameters"}, fields, context);
     }
   }
-  const auto positive = [&](const char* key, double value) {
-    if (value > 0.0) return;
-    if (const Entry* e = entry(key))
-      context.findings.push_back(fault_at(e->value.at, "run." + e->key, "must be > 0"));
-  };
-  positive("duration", params_.duration);
-  positive("step", params_.step);
-  const auto refuse = [&](const char* key, const char* sentence) {
+  const auto refuse = [&](const char* key, const std::string& sentence) {
     if (const Entry* e = entry(key))
       context.findings.push_back(fault_at(e->value.at, "run." + e->key, sentence));
   };
-  if (params_.static_turn < 0.0) refuse("static_turn", "must be >= 0; 0: no static torque is sought");
+  const auto not_value = [&](const char* key) { return ", not " + kind_name(entry(key)->value); };
+  for (const auto& [key, value] : {std::pair{"duration", params_.duration}, {"step", params_.step}})
+    if (!(value > 0.0) && entry(key) != nullptr) refuse(key, "must be > 0" + not_value(key));
+  if (params_.static_turn < 0.0)
+    refuse("static_turn", "must be >= 0" + not_value("static_turn") + "; 0: no static torque is sought");
   if (const Entry* out = entry("out");
       out != nullptr && out->value.is(Value::Kind::text) && out->value.text.empty())
     refuse("out", "must be the name of a folder, not empty");

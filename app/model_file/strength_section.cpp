@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "app/model_file/part.hpp"
 #include "app/model_file/run_section.hpp"
@@ -98,6 +99,8 @@ void read_strength(const Value& table, const System& system, ModelCase& model_ca
       },
       context, &whole.fields);
   std::map<std::string, Part> places;
+  std::set<std::string>
+      refused;  // sections with a finding of their own: what seems to lack may be what it is of
   const std::vector<std::string> known = torque_elements(system);
   if (const Entry* sections = table.find("sections")) {
     if (!sections->value.is(Value::Kind::table))
@@ -124,14 +127,15 @@ void read_strength(const Value& table, const System& system, ModelCase& model_ca
         SectionStrength own = section;
         if (const std::string why = take_from_contour(model_case.model, name, own); !why.empty())
           context.findings.push_back(fault_at(entry.at, where, why));
-        if (!read) continue;
         places[name] = part;
+        if (!read) refused.insert(name);
         // What is said of one element alone counts beside what is said of many.
         std::erase_if(strength.sections, [&](const auto& other) { return other.element == name; });
         strength.sections.push_back(own);
       }
-      if (!fits && read) {
+      if (!fits) {
         places[entry.key] = part;
+        if (!read) refused.insert(entry.key);
         section.element = entry.key;
         of_none.push_back(section);
       }
@@ -148,7 +152,8 @@ void read_strength(const Value& table, const System& system, ModelCase& model_ca
     const bool no_element =
         std::any_of(of_none.begin(), of_none.end(), [&](const auto& s) { return s.element == name; });
     // A contour that the section would be of may give its diameter.
-    if (no_element && finding.parameter == "diameter" && finding.value.empty()) continue;
+    if (finding.value.empty() && (refused.contains(name) || (no_element && finding.parameter == "diameter")))
+      continue;
     const auto section = places.find(name);
     const Part& part = section != places.end() ? section->second : whole;
     context.findings.push_back(placed(finding, part, finding.place));

@@ -27,15 +27,6 @@ std::string shown(const OneOfMany& run, const std::vector<std::pair<const char*,
   return {};
 }
 
-Json varied_object(const OneOfMany& run) {
-  Json object = Json::object();
-  for (const auto& [name, text] : run.varied) {
-    double value = 0.0;
-    object[name] = read_number(text, value) ? number(value) : Json(text);
-  }
-  return object;
-}
-
 }  // namespace
 
 std::size_t ManyRuns::count(bool ok) const {
@@ -51,7 +42,7 @@ std::string many_as_json(const ManyRuns& many) {
   for (const OneOfMany& run : many.runs)
     object["runs"].push_back({{"name", run.model.name},
                               {"model", run.model.model},
-                              {"varied", varied_object(run)},
+                              {"varied", values_object(run.varied)},
                               {"folder", run.folder},
                               {"status", run.status},
                               {"reason", text_or_null(run.reason)},

@@ -230,15 +230,6 @@ std::vector<std::string> shown_channels(const RunRequest& request) {
   return names;
 }
 
-/// Of the reference shaft by an angle, where its nominal speed is constant; 0: it is not [s].
-double time_of_turn(const ModelRequest& model, double angle) {
-  const auto& reference = model.system.reference();
-  if (!reference || !reference->at) return 0.0;
-  const double speed = reference->at(0.0).rate;
-  if (speed == 0.0 || reference->at(model.model_case.duration).rate != speed) return 0.0;
-  return angle / std::abs(speed);
-}
-
 }  // namespace
 
 void settle_method(RunRequest& request) {
@@ -301,11 +292,13 @@ std::vector<Channel> mesh_channels(const System& system) {
   return found;
 }
 
-double cycle_of(const ModelRequest& model) { return time_of_turn(model, model.model_case.static_turn); }
+double cycle_of(const ModelRequest& model) {
+  return time_of_turn(model.system, model.model_case.static_turn, model.model_case.duration);
+}
 
 double spectrum_cycle(const ModelRequest& model) {
   const double turn = model.model_case.static_turn;
-  return time_of_turn(model, turn > 0.0 ? turn : 2.0 * kTwoPi);
+  return time_of_turn(model.system, turn > 0.0 ? turn : 2.0 * kTwoPi, model.model_case.duration);
 }
 
 std::vector<std::string> soft_chain_warnings(const System& system) {

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "app/run/figure_span.hpp"
 #include "app/run/run_request.hpp"
 #include "app/run/run_up.hpp"
+#include "models/figure_span.hpp"
 #include "solvers/run/mean_speed.hpp"
 
 namespace drev::app {

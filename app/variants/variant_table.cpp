@@ -42,12 +42,7 @@ std::string unit_of(const VariantStudy& study, const std::string& name) {
 namespace {
 
 Json varied_object(const VariantStudy& study, std::uint64_t variant) {
-  Json object = Json::object();
-  for (const auto& [name, text] : study.plan().parameters(variant)) {
-    double value = 0.0;
-    object[name] = read_number(text, value) ? number(value) : Json(text);
-  }
-  return object;
+  return values_object(study.plan().parameters(variant));
 }
 
 std::string varied_text(const VariantStudy& study, std::uint64_t variant) {

@@ -255,18 +255,19 @@ std::vector<Finding> check_strength(const Strength& strength) {
     const auto check = [&](const char* parameter, double value, double low, double high, const char* unit,
                            const char* range) {
       if (!std::isnan(value) && !(value >= low && value <= high))
-        findings.push_back({place, parameter, rounded_text(value, kTypedDigits), unit, range});
+        findings.push_back(
+            {place, parameter, rounded_text(value, kTypedDigits), unit, std::string("must be ") + range});
     };
     constexpr double kLeast = 1e-300, kMost = 1e300;
     check("diameter", s.diameter, kLeast, kMost, "m", "> 0");
     // Beside a diameter that is wrong itself, the bore may be right.
     if (!(s.diameter <= 0.0))
       check("bore", s.bore, 0.0, std::isnan(s.diameter) ? 0.0 : std::nextafter(s.diameter, 0.0), "m",
-            "0 <= bore < diameter");
+            ">= 0 and < diameter");
     check("stress_concentration", s.stress_concentration, 1.0, kMost, "", ">= 1");
     check("tensile_strength", s.tensile_strength / 1e6, 400.0, 800.0, "MPa",
-          "400 to 800 MPa (IACS UR M68.3)");
-    check("shape_factor", s.shape_factor, kLeast, 1.0, "", "0 < C_K <= 1");
+          "from 400 to 800 MPa (IACS UR M68.3)");
+    check("shape_factor", s.shape_factor, kLeast, 1.0, "", "> 0 and <= 1");
     for (const auto& [name, value] :
          {std::pair{"permissible_stress", s.permissible_stress}, {"transient_stress", s.transient_stress}})
       check(name, value, kLeast, kMost, "Pa", "> 0");
@@ -284,7 +285,7 @@ std::vector<Finding> check_strength(const Strength& strength) {
     check("permissible_heat", s.permissible_heat, kLeast, kMost, "W", "> 0");
     check("sn_range", s.sn.reference, kLeast, kMost, "Pa", "> 0");
     check("sn_cycles", s.sn.cycles, kLeast, kMost, "", "> 0");
-    check("sn_slope", s.sn.slope, 1.0, 100.0, "", "1 to 100");
+    check("sn_slope", s.sn.slope, 1.0, 100.0, "", "from 1 to 100");
     const bool rule = !std::isnan(s.tensile_strength) || !std::isnan(s.shape_factor);
     if (rule && (std::isnan(s.tensile_strength) || std::isnan(s.shape_factor)))
       findings.push_back(
@@ -298,7 +299,7 @@ std::vector<Finding> check_strength(const Strength& strength) {
   }
   const double rated = std::isnan(strength.rated_speed) ? 1.0 : strength.rated_speed;
   if (!(rated > 0.0) || rated == none)
-    findings.push_back({"class", "rated_speed", to_text(to_rpm(rated)), "rpm", "> 0"});
+    findings.push_back({"class", "rated_speed", to_text(to_rpm(rated)), "rpm", "must be > 0"});
   return findings;
 }
 

@@ -472,5 +472,5 @@ TEST_CASE("Faults of [class] have one unit on both sides, and a [class] without 
   const std::string faults =
       said("[class.sections]\ns = { diameter_mm = -72, tensile_strength_MPa = 300, shape_factor = 1 }\n");
   CHECK(contains(faults, "= -0.072 m"));
-  CHECK(contains(faults, "= 300 MPa, 400 to 800 MPa"));
+  CHECK(contains(faults, "= 300 MPa, must be from 400 to 800 MPa"));
 }

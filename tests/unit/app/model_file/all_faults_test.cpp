@@ -167,6 +167,21 @@ TEST_CASE("A governor says which of its keys are missing") {
   require_faults(governor(""), {"m/g: proportional_gain, is missing; or give droop"});
 }
 
+TEST_CASE("Faults of a run are said beside those of its model, with the values as they were typed") {
+  require_faults(
+      train("[parameters]\nx_deg = { default = 95, meaning = \"an angle\" }\n[run]\nduration_ms = -1\n"
+            "method = \"euler\"\nstart = \"warm\"\nsettle_s = -3\nevery_s = -2\n"
+            "[class.sections.s]\ndiameter_mm = -3\nbogus = 3\n[elements.m]\ntype = \"gear_mesh\"\n"
+            "nodes = [\"a\", \"b\"]\nmodule_mm = 0\npressure_angle_deg = \"x_deg\"\nteeth_1 = 9\n"
+            "teeth_2 = 9\nstiffness_N_per_m = 1\n"),
+      {"run.duration_ms, must be > 0, not the number -1", "run: method name = euler, is no method",
+       "run: start = warm, must be rest", "run: settle = -3 s, must be auto",
+       "run: every = -2 s, must be between", "class.sections.s.bogus, is unknown here",
+       "class.sections.s: diameter = -0.003 m, must be > 0 (given as diameter_mm = -3)",
+       "module = 0 m, must be > 0 and finite (given as module_mm = 0)",
+       "rad, must be >= 0 and < pi/2 (given as pressure_angle_deg = \"x_deg\")"});
+}
+
 TEST_CASE("What a run with output would refuse is wrong with its file") {
   const auto fault = [](const std::string& run, const std::string& said) {
     require_faults(train("[run]\n" + run + "\n"), {said});

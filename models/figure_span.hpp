@@ -1,13 +1,12 @@
 #pragma once
 /// Which part of a run its figures are of.
 #include <drev/core/system.hpp>
+#include <drev/models/model_case.hpp>
 
 #include <optional>
 #include <string>
 
-#include "app/run/run_request.hpp"
-
-namespace drev::app {
+namespace drev {
 
 struct FigureSpan {
   double from = 0.0;     ///< s
@@ -16,9 +15,13 @@ struct FigureSpan {
   std::string reason;  ///< why from there; a sentence without full stop, empty: the whole run, as by default
 };
 
-/// system: that is run, from its start. periodic: it starts in the periodic steady state. cycle: s, of which the
-/// settled part must hold one; 0: none.
+/// system: that is run, from its start. periodic: it starts in the periodic steady state. duration: of the run [s].
+/// cycle: s, of which the settled part must hold one; 0: none.
 FigureSpan figure_span(const std::optional<Settle>& asked, const System& system, bool periodic,
                        double duration, double cycle);
 
-}  // namespace drev::app
+/// angle / |nominal speed| of the reference shaft, where that is the same at the start and at the end of a run of
+/// this duration [s]; 0: it is not, or nothing turns.
+double time_of_turn(const System& system, double angle, double duration);
+
+}  // namespace drev
