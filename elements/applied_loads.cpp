@@ -3,7 +3,41 @@
 #include <drev/elements/cam_torque.hpp>
 #include <drev/elements/engine_order_torque.hpp>
 
+#include <complex>
+#include <limits>
+#include <map>
+
 namespace drev {
+
+namespace {
+
+/// One harmonic of each order, sum_i A_i exp(i phase_i). Where these cancel but for rounding there is none: exact
+/// propagation would resolve what is left of them.
+std::vector<Harmonic> combined(const std::vector<Harmonic>& harmonics) {
+  struct Sum {
+    std::complex<double> phasor = 0.0;
+    double size = 0.0;
+    const Harmonic* only = nullptr;
+  };
+  std::map<double, Sum> sums;
+  for (const Harmonic& h : harmonics) {
+    Sum& sum = sums[h.order];
+    sum.only = sum.size > 0.0 ? nullptr : &h;
+    sum.phasor += std::polar(1.0, h.phase) * h.amplitude;
+    sum.size += std::abs(h.amplitude) * std::max(1.0, std::abs(h.phase));
+  }
+  std::vector<Harmonic> all;
+  for (const auto& [order, sum] : sums)
+    if (sum.only != nullptr)
+      all.push_back(*sum.only);
+    else if (std::abs(sum.phasor) > 4.0 * std::numeric_limits<double>::epsilon() * sum.size)
+      all.push_back({order, std::abs(sum.phasor), std::arg(sum.phasor)});
+  return all;
+}
+
+}  // namespace
+
+AppliedTorque::AppliedTorque(Params params) : params_(std::move(params)), sum_(combined(params_.harmonics)) {}
 
 void AppliedTorque::check(ParameterCheck& check) const {
   const int given =

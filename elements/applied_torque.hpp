@@ -26,7 +26,7 @@ class AppliedTorque final : public Element, public Load {
     std::optional<TimeTable> table = {};          ///< instead of the function: s -> N m
     std::vector<Harmonic> harmonics = {};         ///< or these: order = frequency f [Hz], N m, rad
   };
-  explicit AppliedTorque(Params params) : params_(std::move(params)) {}
+  explicit AppliedTorque(Params params);
 
   const Params& params() const { return params_; }
   std::string_view type() const override { return "applied torque"; }
@@ -36,7 +36,7 @@ class AppliedTorque final : public Element, public Load {
 
   LoadResponse evaluate(const LoadInput& in) const override {
     if (params_.table) return {.torque = params_.table->at(in.t).value};
-    return {.torque = params_.torque ? params_.torque(in.t) : sum_at(params_.harmonics, kTwoPi * in.t).value};
+    return {.torque = params_.torque ? params_.torque(in.t) : sum_at(sum_, kTwoPi * in.t).value};
   }
   bool depends_on_motion() const override { return false; }
   std::vector<double> frequencies() const override {
@@ -60,6 +60,7 @@ class AppliedTorque final : public Element, public Load {
 
  private:
   Params params_;
+  std::vector<Harmonic> sum_;  // the harmonics, one of each frequency
 };
 
 }  // namespace drev

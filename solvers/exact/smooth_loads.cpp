@@ -180,9 +180,10 @@ double SmoothLoads::differ_called(Place& l, const TaylorSeries& series, NodeForc
     if (l.feedback)
       gain = std::max(gain,
                       0.5 * h_ * h_ * std::abs(r.dtorque_dangle - l.slope) + h_ * std::abs(r.dtorque_dspeed));
-    l.rounding = std::max(l.rounding, kTorqueRounding * std::abs(l.coeff) *
-                                          (std::abs(r.torque) + std::abs(r.dtorque_dangle * p.angle) +
-                                           std::abs(r.dtorque_dspeed * p.speed)));
+    l.rounding = std::max(
+        l.rounding, kTorqueRounding * std::abs(l.coeff) *
+                        (std::abs(r.torque) + std::abs(r.dtorque_dangle) * std::max(1.0, std::abs(p.angle)) +
+                         std::abs(r.dtorque_dspeed * p.speed)));
     l.at_nodes[q] = p.beyond;
     forces.at(q, l.row) += p.beyond;
   }

@@ -3,7 +3,9 @@
 #include <drev/core/model.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/applied_torque.hpp>
+#include <drev/elements/ground_spring.hpp>
 #include <drev/elements/inertia.hpp>
+#include <drev/elements/machines/torque_function.hpp>
 #include <drev/elements/shaft_spring.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
 
@@ -90,6 +92,46 @@ TEST_CASE("Rounding of a torque that begins at zero shortens no steps") {
     const double free = 20.0 / 0.012 * 2.0 * s * s / omega, shaft = 8500.0 / 0.012 * t * t / 12.0;
     CHECK(std::abs(came.speed / free - (1.0 - shaft)) < 1e-8 + shaft * shaft);
   }
+}
+
+TEST_CASE("Harmonics that cancel are no torque, and others of one frequency are their sum") {
+  const auto pair = [](std::vector<Harmonic> harmonics) {
+    Model m("disc");
+    m.add_node("a");
+    m.add<Inertia>("J", {"a"}, {.inertia = 2.0});
+    m.add<GroundSpring>("k", {"a"}, {.stiffness = 2e4});
+    m.add<AppliedTorque>("load", {"a"}, {.harmonics = std::move(harmonics)});
+    return m.build();
+  };
+  const auto run = [&](std::vector<Harmonic> harmonics) {
+    return speed_at(pair(std::move(harmonics)), 1.0, 1e-10);
+  };
+  const Came none = run({{2.0, 100.0, 0.0}, {2.0, 100.0, kPi}});
+  CHECK(none.speed == 0.0);
+  CHECK(none.steps < 100);
+  CHECK(run({{2.0, 7.0, 0.0}, {2.0, 7.0, kTwoPi / 3.0}, {2.0, 7.0, 2.0 * kTwoPi / 3.0}}).speed == 0.0);
+  // 3 cos + 4 sin = 5 cos(x - atan2(4, 3))
+  const double sum = run({{3.0, 3.0, 0.0}, {1.0, 2.0, 0.1}, {3.0, 4.0, -0.5 * kPi}}).speed;
+  CHECK(sum == Approx(run({{1.0, 2.0, 0.1}, {3.0, 5.0, -std::atan2(4.0, 3.0)}}).speed).epsilon(1e-9));
+}
+
+TEST_CASE("A train that leaves an unstable rest takes no steps for the rounding of its load's angle") {
+  // J x'' = T sin x from x = 0, which the load looks up within a turn: its rounding alone drives the train off, and
+  // J x'^2/2 = T (1 - cos x) from then on.
+  const double torque = 400.0, inertia = 0.1;
+  Model m("top");
+  m.add_node("a");
+  m.add<Inertia>("J", {"a"}, {.inertia = inertia});
+  m.add<TorqueFunction>("top", {"a"},
+                        {.torque = [=](const TorqueVariables& at) { return -torque * sin(at.angle + kPi); }});
+  const System system = m.build();
+  State state = State::initial(system);
+  const RunSummary summary = propagate(system, {.tolerance = 1e-10, .t_end = 0.45}, state);
+  REQUIRE(summary.ok());
+  CHECK(summary.steps < 300);
+  const double x = std::abs(state.z[0]), speed = 2.0 * std::sqrt(torque / inertia) * std::sin(0.5 * x);
+  CHECK(x > 1e-6);
+  CHECK(std::abs(state.v[0]) == Approx(speed).epsilon(1e-7));
 }
 
 TEST_CASE("A torque of frequencies takes steps that the fastest mode limits") {
