@@ -35,6 +35,8 @@ class ComplexElimination {
   bool factorize(const Vector& m, const Vector& c, const Vector& k, std::complex<double> s);
   /// b -> x, size() entries in place. After a factorisation that succeeded.
   void solve(std::complex<double>* x);
+  /// The last factorisation sought pivots, since one was lost.
+  bool pivoted() const { return use_pivoted_; }
   int size() const { return n_; }  ///< unknowns that are not held
 
  private:

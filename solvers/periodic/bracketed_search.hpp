@@ -18,7 +18,7 @@ struct TopBracket {
   double start = 0.0;
 };
 
-/// All of them, by ascending place. Of neighbours with the same value the last one is taken.
+/// All of them, by ascending place. Of neighbours with the same value the last one is taken; infinite ones are tops each.
 inline std::vector<TopBracket> tops_of(const std::vector<double>& places, const std::vector<double>& values) {
   constexpr double kInside = 1e-3;  // distance of `start` from an end relative to the bracket [-]
   std::vector<TopBracket> tops;
@@ -26,7 +26,7 @@ inline std::vector<TopBracket> tops_of(const std::vector<double>& places, const 
     const bool first = i == 0 || std::isnan(values[i - 1]),
                last = i + 1 == values.size() || std::isnan(values[i + 1]);
     if (std::isnan(values[i]) || (!first && values[i - 1] > values[i]) ||
-        (!last && values[i + 1] >= values[i]))
+        (!last && std::isfinite(values[i]) && values[i + 1] >= values[i]))
       continue;
     const double low = places[first ? i : i - 1], high = places[last ? i : i + 1];
     const double start = first  ? low + kInside * (high - low)

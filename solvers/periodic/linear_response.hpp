@@ -32,7 +32,17 @@ class LinearResponse {
 
   /// speed: speed of the reference shaft [rad/s], > 0. only: number of the one order to be solved; -1: all
   /// orders.
+  /// Where an order meets a mode that nothing damps, what the mode does not move has the values beside it (Resonance).
   void vibration(double speed, Point& point, int only = -1);
+  /// At a speed at which an order meets a mode that nothing damps: from the responses at two distances beside it, towards
+  /// which amplitudes grow as one over the distance if the loads excite the mode.
+  static constexpr double kNear = 1e-7;  ///< distance from the speed at which that is, relative to it [-]
+  struct Resonance {
+    bool excited = false;  ///< false: the loads do no work on the mode, and the response is bounded
+    std::vector<bool> unbounded = {};  ///< for each section: the mode moves it
+    Point near = {};                   ///< response to the order next to the speed
+  };
+  Resonance resonance(double speed, int order);
   /// Throws SolverError where the static stiffness is singular although no part floats.
   void mean(double speed, Point& point);
   /// Right side of the one order that vibration() solved last, and the sections' amplitudes where z is the motion there; both as
@@ -68,6 +78,10 @@ class LinearResponse {
   /// Finds the mean results of each load alone, at a mean of 1, and those of the drag at a speed of 1 rad/s.
   void find_mean_of_parts(Eigen::Index loads);
   void find_active(double speed, int only);
+  /// vibration() with infinite amplitudes, and no heat, of the orders without a solution, which lost_orders_ tells.
+  void solve(double speed, Point& point, int only);
+  /// Size of the motion of the one order that was solved last; infinite: there is no solution.
+  double motion() const;
   /// Adds the complex stiffnesses at the frequencies w_ to the stiffness and to the imaginary part of the sets.
   void spread_frequency_terms(int sets);
   /// Complex stiffness of a frequency term beyond that of the matrices, with the held internal nodes at rest.
@@ -86,6 +100,9 @@ class LinearResponse {
   void solve_lanes(int used, const LaneDynamics<Value>& dynamics);
   /// Solves one lane by the elimination with pivoting, b -> x; false: the matrix is singular, and x = 0.
   bool solve_lane(int set, int lane);
+  /// Whether the solution z_ changes by its own size where the frequency changes by rounding: dz/d(ln omega) =
+  /// S^-1 2 omega^2 M z. What is left of it is rounding then, unless it is without limit.
+  bool is_resonant(double omega);
   void add_twist_squares(int used);
 
   const System& system_;
@@ -112,7 +129,8 @@ class LinearResponse {
   std::vector<double> twist_squares_;  // |X_h|^2 of each term, summed over the orders that were solved
   Point trial_;
   std::optional<LaneSections> rows_;
-  std::vector<int> active_;  // numbers of the orders in which any load has content
+  std::vector<int> lost_orders_;  // numbers of the orders at which the matrix was singular
+  std::vector<int> active_;       // numbers of the orders in which any load has content
   /// Real parts of the complex stiffnesses with the rest of K, and their imaginary parts: common to all frequencies
   /// where they do not depend on these, otherwise of each lane.
   Vector stiffness_common_, loss_common_;

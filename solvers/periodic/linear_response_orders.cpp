@@ -22,17 +22,29 @@ bool LinearResponse::solve_lane(int set, int lane) {
   for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = {p_re_[row(i)].v[lane], p_im_[row(i)].v[lane]};
   const bool own = !system_.frequency_terms().empty();
   if (own) add_frequency_terms(std::abs(omega));
-  const bool solved = elimination_->factorize(mass_, own ? damping_at_omega_ : damping_here_,
-                                              own ? stiffness_at_omega_ : stiffness_here_, {0.0, omega});
-  if (solved)
-    elimination_->solve(z_.data());
-  else
-    std::fill(z_.begin(), z_.end(), Complex(0.0, 0.0));
+  bool solved = elimination_->factorize(mass_, own ? damping_at_omega_ : damping_here_,
+                                        own ? stiffness_at_omega_ : stiffness_here_, {0.0, omega});
+  if (solved) elimination_->solve(z_.data());
+  solved = solved && !(elimination_->pivoted() && is_resonant(omega));
+  if (!solved) std::fill(z_.begin(), z_.end(), Complex(0.0, 0.0));
   for (std::size_t i = 0; i < z_.size(); ++i) {
     re_[row(i)].v[lane] = z_[i].real();
     im_[row(i)].v[lane] = z_[i].imag();
   }
   return solved;
+}
+
+bool LinearResponse::is_resonant(double omega) {
+  constexpr double kSame = 1e-10;  // relative difference of frequencies that are one but for rounding [-]
+  const SparseMatrix& pattern = system_.pattern();
+  std::vector<Complex> change(z_.size());
+  double size = 0.0, change_size = 0.0;
+  for (int column = 0; column < system_.size(); ++column)
+    for (int slot = pattern.outerIndexPtr()[column]; slot < pattern.outerIndexPtr()[column + 1]; ++slot)
+      change[idx(pattern.innerIndexPtr()[slot])] += 2.0 * omega * omega * mass_[slot] * z_[idx(column)];
+  elimination_->solve(change.data());
+  for (std::size_t i = 0; i < z_.size(); ++i) size += std::norm(z_[i]), change_size += std::norm(change[i]);
+  return kSame * kSame * change_size > size;
 }
 
 int LinearResponse::give_orders(double speed, std::size_t first) {
@@ -119,7 +131,7 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
     const Eigen::Index k = orders[lane];
     point.amplitude.row(k).setConstant(kInfinite);
     point.twist.row(k).setConstant(kInfinite);
-    point.heat.setConstant(kInfinite);
+    lost_orders_.push_back(static_cast<int>(k));
   }
 }
 

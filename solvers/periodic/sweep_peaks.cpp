@@ -29,14 +29,11 @@ constexpr double kUndamped = 1e-9;      // damping ratio that is rounding [-]
 constexpr double kTooDamped = 0.7;      // damping ratio above which an order has no resonance [-]
 constexpr std::size_t kMostPeaks = 10;  // largest number of peaks of a section
 constexpr double kSmallPeak = 1e-3;     // smallest peak relative to the section's largest one [-]
-constexpr double kSmallHeat =
-    0.1;  // smallest heat that is followed relative to the section's largest one [-]
-constexpr double kSameSeed = 1e-2;   // part of a mode's half width below which two seeds are one [-]
-constexpr double kPeakSpeed = 1e-7;  // tolerance of a peak's speed relative to it [-]
-constexpr double kNear = 1e-6;       // distance from an undamped resonance relative to its speed [-]
-constexpr double kAway = 1e-4;       // larger distance, beside which the mode's growth towards it shows [-]
-constexpr double kResonantGrowth = 10.0;  // growth from kAway to kNear above which a section moves [-]
-constexpr double kOwnPart = 0.1;          // smallest own part of an amplitude whose top is the mode's [-]
+constexpr double kSmallHeat = 0.1;      // smallest heat followed relative to the section's largest one [-]
+constexpr double kSameSeed = 1e-2;      // part of a mode's half width below which two seeds are one [-]
+constexpr double kPeakSpeed = 1e-7;     // tolerance of a peak's speed relative to it [-]
+constexpr double kSameSpeed = 1e-10;    // relative difference of speeds that are one but for rounding [-]
+constexpr double kOwnPart = 0.1;        // smallest own part of an amplitude whose top is the mode's [-]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// For each mode of `last` the number of the mode of `next` it has become, by shape: largest |x' y| / (|x|
@@ -204,12 +201,12 @@ class Search {
         sweep_.criticals.push_back(critical);
         numbers_.push_back(static_cast<int>(k));
         if (!(ratio > kUndamped)) {
-          unbounded(speed, static_cast<int>(k));
+          sweep_.criticals.back().amplitude = unbounded(speed, static_cast<int>(k));
           continue;
         }
         const double width = std::abs(lambda.real()) / sweep_.orders[k];
         for (const double at : {speed - width, speed, speed + width})
-          if (at > low_ && at < high_ && !is_near(at, kSameSeed * width)) all_sections(at);
+          if (at > low_ && at < high_ && !is_near(at, kSameSeed * width)) curves_.emplace(at, solved(at));
       }
     for (const auto& [speed, point] : curves_)
       if (!std::binary_search(sweep_.speeds.begin(), sweep_.speeds.end(), speed) ||
@@ -283,9 +280,7 @@ class Search {
       SweepCritical& critical = sweep_.criticals[i];
       const int order = numbers_[i];
       if (!(critical.damping_ratio > kUndamped)) {
-        critical.amplitude = critical.half_range = critical.own_amplitude = kInfinite;
-        response_.vibration((1.0 + kNear) * critical.speed, point_, order);
-        critical.section = most_moved(point_.amplitude.row(order));
+        find_undamped(critical, order);
         continue;
       }
       find_own_parts(critical, order);
@@ -326,13 +321,15 @@ class Search {
   /// The speed of the sweep at which an order meets the mode's frequency; 0: none.
   double meets(Eigen::Index mode, double order) const {
     const auto above = [&](double speed) { return order * speed - sweep_.modes.at(mode, speed).imag(); };
-    if (!(above(low_) <= 0.0) || !(above(high_) >= 0.0)) return 0.0;
-    double low = low_, high = high_;
+    double low = (1.0 - kSameSpeed) * low_, high = (1.0 + kSameSpeed) * high_;
+    if (!(above(low) <= 0.0) || !(above(high) >= 0.0)) return 0.0;
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high);
       (above(middle) < 0.0 ? low : high) = middle;
     }
-    return 0.5 * (low + high);
+    const double speed = std::clamp(0.5 * (low + high), low_, high_);
+    const auto known = curves_.lower_bound((1.0 - kSameSpeed) * speed);
+    return known != curves_.end() && known->first <= (1.0 + kSameSpeed) * speed ? known->first : speed;
   }
   /// Whether a speed is known already. Modes that coincide meet an order at speeds that differ by rounding alone: all of them
   /// entered, the rounding of the curve would make a top of one of them, between neighbours without the curve's own top.
@@ -353,25 +350,28 @@ class Search {
     note_largest(here);
     return here;
   }
-  void all_sections(double speed) {
-    if (!curves_.contains(speed)) curves_.emplace(speed, solved(speed));
-  }
   /// Enters infinite extremes at a speed at which an order meets an undamped mode, for each section that the mode
-  /// moves: its amplitude grows towards the speed as one over the distance.
-  void unbounded(double speed, int order) {
-    const double away = (1.0 + kAway) * speed;
-    SweepPoint beside = solved(away);
-    beside.speed = speed;
-    response_.vibration(away, point_, order);
-    const Vector at_away = point_.amplitude.row(order).cwiseAbs();
-    response_.vibration((1.0 + kNear) * speed, point_, order);
-    const Vector at_near = point_.amplitude.row(order).cwiseAbs();
-    SweepPoint& here = curves_.try_emplace(speed, std::move(beside)).first->second;
+  /// moves. Returns the largest amplitude of the order there: infinite where the loads excite the mode.
+  double unbounded(double speed, int order) {
+    const LinearResponse::Resonance at = response_.resonance(speed, order);
+    if (!at.excited) return std::abs(at.near.amplitude(order, most_moved(at.near.amplitude.row(order))));
+    if (!curves_.contains(speed)) curves_[speed] = solved((1.0 + LinearResponse::kNear) * speed);
+    SweepPoint& here = curves_[speed];
+    here.speed = speed;
     for (Eigen::Index c = 0; c < here.maximum.size(); ++c)
-      if (at_near[c] > kResonantGrowth * at_away[c])
+      if (at.unbounded[static_cast<std::size_t>(c)])
         here.maximum[c] = kInfinite, here.minimum[c] = -kInfinite;
+    return kInfinite;
   }
-  /// Adds mean, extremes, twist and heat at the peak's speed.
+  /// Of a critical at which the order meets an undamped mode: infinite, unless the loads do not excite the mode.
+  void find_undamped(SweepCritical& critical, int order) {
+    critical.section = most_moved(response_.resonance(critical.speed, order).near.amplitude.row(order));
+    critical.half_range = critical.own_amplitude = critical.amplitude;
+    if (!std::isfinite(critical.amplitude)) return;
+    critical.own_amplitude = 0.0;
+    critical.half_range =
+        one((1.0 + LinearResponse::kNear) * critical.speed, static_cast<std::size_t>(critical.section));
+  }
   void add_values(SweepPeak& peak) {
     const auto c = static_cast<Eigen::Index>(peak.section);
     const bool twists = !sweep_.sections[static_cast<std::size_t>(peak.section)].twist_unit.empty();
@@ -389,7 +389,6 @@ class Search {
     peak.maximum = found.max, peak.minimum = found.min;
     if (twists) peak.twist_half_range = extremes_of(point_.twist, c).half_range();
   }
-  /// Of the sum in a column alone.
   const SumExtremes& extremes_of(const Eigen::MatrixXcd& amplitudes, Eigen::Index column) {
     const std::complex<double>* sum = amplitudes.col(column).data();
     sum_.extremes(std::span(&sum, 1), extremes_);

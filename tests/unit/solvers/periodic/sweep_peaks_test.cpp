@@ -4,6 +4,7 @@
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -174,6 +175,60 @@ TEST_CASE("An order that meets an undamped mode is an infinite peak at their spe
     CHECK(critical.damping_ratio == 0.0);
     CHECK_FALSE(std::signbit(critical.damping_ratio));
   }
+}
+
+TEST_CASE("An undamped mode that the loads do not excite is no resonance", "[sweep_peaks]") {
+  // Three equal discs with equal torques on the outer ones and a damper on the middle one: the mode at w^2 = k/J moves the
+  // outer discs against each other. The others move alike: (k - J w^2) a - k b = p, (2 k - J w^2 + i c w) b - 2 k a = 0.
+  constexpr double torque = 10.0, damping = 10.0;
+  for (const double natural : {20.0 * kPi, 50.0, 1e3 / 3.0}) {
+    const double k = natural * natural;
+    Model m("symmetric");
+    for (const char* node : {"a", "b", "c"}) m.add_node(node);
+    m.set_reference("a", constant_speed(natural));
+    for (const char* node : {"a", "b", "c"})
+      m.add<Inertia>(std::string("J_") + node, {node}, {.inertia = 1.0});
+    m.add<ShaftSpring>("k1", {"a", "b"}, {.stiffness = k});
+    m.add<ShaftSpring>("k2", {"b", "c"}, {.stiffness = k});
+    m.add<AbsoluteDamper>("d", {"b"}, {.damping = damping});
+    for (const char* node : {"a", "c"})
+      m.add<EngineOrderTorque>(std::string("p_") + node, {node},
+                               {.harmonics = {{1.0, torque, 0.0}}, .twist_feedback = false});
+    const System system = m.build();
+    const Complex b = -torque / k, a = b * (k + Complex(0.0, damping * natural)) / (2.0 * k);
+    for (const std::vector<double>& speeds :
+         {std::vector{natural}, std::vector{0.5 * natural, natural, 1.5 * natural},
+          std::vector{0.999 * natural, 1.001 * natural}}) {
+      INFO(natural << " rad/s, " << speeds.size() << " speeds");
+      const LinearSweep sweep = sweep_linear(system, {.speeds = speeds, .orders = {1.0}});
+      for (const SweepPeak& peak : sweep.peaks) CHECK(std::isfinite(peak.half_range));
+      REQUIRE(sweep.criticals.size() == 1);
+      const SweepCritical& critical = sweep.criticals.front();
+      CHECK(critical.speed == Approx(natural).epsilon(1e-9));
+      CHECK(critical.half_range == Approx(k * std::abs(a - b)).epsilon(1e-6));
+      CHECK(critical.own_amplitude == 0.0);
+      if (speeds.size() == 2) continue;
+      const auto at = static_cast<Eigen::Index>(speeds.size() / 2);
+      CHECK(std::abs(sweep.sections[0].amplitude(0, at)) == Approx(k * std::abs(a - b)).epsilon(1e-6));
+      CHECK(sweep.sections[2].heat[at] == Approx(0.5 * damping * std::norm(natural * b)).epsilon(1e-6));
+    }
+  }
+}
+
+TEST_CASE("A critical at the first or only speed is found, and each of several undamped ones is a peak",
+          "[sweep_peaks]") {
+  const double natural = std::sqrt(1e4 / 1.2);
+  for (const std::vector<double>& speeds :
+       {std::vector{natural}, std::vector{natural, 2.0 * natural}, std::vector{0.4 * natural, natural}}) {
+    const LinearSweep sweep = sweep_linear(two_discs(0.0), {.speeds = speeds, .orders = {1.0, 3.0}});
+    CHECK(sweep.criticals.size() == 1);
+    CHECK(std::isinf(largest_half_range(sweep, 0).value));
+  }
+  const LinearSweep wide =
+      sweep_linear(two_discs(0.0), {.speeds = {0.3 * natural, 2.0 * natural}, .orders = {1.0, 2.0, 3.0}});
+  CHECK(std::count_if(wide.peaks.begin(), wide.peaks.end(), [](const SweepPeak& peak) {
+          return peak.section == 0 && std::isinf(peak.half_range);
+        }) == 3);
 }
 
 TEST_CASE("A critical is in the section that its mode moves, not in the one with the quasi-static torque",
