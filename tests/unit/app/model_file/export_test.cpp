@@ -86,6 +86,28 @@ TEST_CASE("Where runs start and from when on figures are taken: read, exported a
   CHECK_FALSE(back.settle->time);
 }
 
+TEST_CASE("What a file says of its run is in its export, but for the folder of its results") {
+  const auto options_of = [](const std::string& text, std::string* written) {
+    const app::ModelFile file(text, "own.toml", "");
+    const Parameters parameters(file.entry().name, file.entry().parameters);
+    const app::RunOptions options = file.run_options(parameters);
+    if (written != nullptr)
+      *written = app::export_model(file.entry(), parameters, file.entry().build(parameters), options);
+    return options.values;
+  };
+  const std::string model =
+      "format = 1\n[parameters]\nn = 3\n[nodes]\na = {}\n[elements]\n"
+      "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n[run]\nout = \"results\"\n";
+  for (const char* run :
+       {"method = \"sdirk4\"\ntolerance = \"n*1e-6\"\nevery_ms = 0.1\n", "accuracy = 1e-3\n"}) {
+    std::string written;
+    auto given = options_of(model + run, &written);
+    given.erase("--out");
+    INFO(written);
+    CHECK(options_of(written, nullptr) == given);
+  }
+}
+
 TEST_CASE("Every built-in model, exported and read back, gives the same bits") {
   struct Case {
     const char* model;
