@@ -447,13 +447,13 @@ FileCase read_case(const Document& document, const Parameters& parameters, const
   return result;
 }
 
-void set_run_parameters(const Document& document, const std::string& run, std::vector<Parameter>& parameters,
-                        std::vector<Finding>& findings) {
-  const Entry* named = document.run != nullptr ? document.run->find(run) : nullptr;
-  if (run.empty() || named == nullptr) return;
-  const Entry* given = named->value.find("parameters");
+namespace {
+
+/// Of one table, [run] or that of a run.
+void set_parameters(const Document& document, const Value& table, const std::string& where,
+                    std::vector<Parameter>& parameters, std::vector<Finding>& findings) {
+  const Entry* given = table.find("parameters");
   if (given == nullptr) return;
-  const std::string where = "run." + run + ".parameters";
   if (!given->value.is(Value::Kind::table)) {
     findings.push_back(fault_at(given->value.at, where, "must be a table, { name = value }"));
     return;
@@ -484,6 +484,16 @@ void set_run_parameters(const Document& document, const std::string& run, std::v
       }
     }
   }
+}
+
+}  // namespace
+
+void set_run_parameters(const Document& document, const std::string& run, std::vector<Parameter>& parameters,
+                        std::vector<Finding>& findings) {
+  if (document.run == nullptr) return;
+  set_parameters(document, *document.run, "run.parameters", parameters, findings);
+  if (const Entry* named = document.run->find(run); !run.empty() && named != nullptr)
+    set_parameters(document, named->value, "run." + run + ".parameters", parameters, findings);
 }
 
 }  // namespace drev::app

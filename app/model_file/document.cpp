@@ -384,7 +384,7 @@ std::vector<std::string> Document::run_names() const {
   std::vector<std::string> names;
   if (run != nullptr)
     for (const Entry& entry : run->entries)
-      if (entry.value.is(Value::Kind::table)) names.push_back(entry.key);
+      if (entry.value.is(Value::Kind::table) && entry.key != "parameters") names.push_back(entry.key);
   return names;
 }
 
