@@ -181,14 +181,7 @@ class CaseReader {
   void add_motion(const std::string& name, const NodeParams& p, const Part& part) {
     if (p.hold) model_.hold(name);
     if (!std::isnan(p.constant_speed)) model_.constant_speed(name, p.constant_speed);
-    if (p.has_given) {
-      const double w = hz(p.given.frequency);
-      model_.given_motion(name, {[g = p.given, w](double t) {
-                            const double c = g.amplitude * std::cos(w * t + g.phase),
-                                         s = g.amplitude * std::sin(w * t + g.phase);
-                            return MotionPoint{g.offset + c, -w * s, -w * w * c};
-                          }});
-    }
+    if (p.has_given) model_.given_motion(name, {p.given});
     try {
       if (!std::isnan(p.nominal_speed))
         model_.set_reference(name, constant_speed(p.nominal_speed, p.nominal_angle));

@@ -57,7 +57,10 @@ class CaseWriter {
     std::map<std::string, NodeParams> params;
     for (const Model::Prescription& p : model_.prescriptions()) {
       NodeParams& node = params[model_.name_of(p.node)];
-      if (p.deviation)
+      if (const auto* given = p.deviation ? p.deviation->at.target<NodeParams::Given>() : nullptr) {
+        node.given = *given;
+        node.has_given = true;
+      } else if (p.deviation)
         refuse(model_.name_of(p.node), "its given motion is a function of C++");
       else if (p.omega)
         node.constant_speed = *p.omega;

@@ -223,6 +223,22 @@ TEST_CASE("Every element, exported and read back, gives the same bits") {
   check_same(read_back(app::export_model(entry, Parameters("all", {}), model_case)), model_case, 0.02);
 }
 
+TEST_CASE("A given motion of a file is written as it was given") {
+  const ModelCase model_case = read_back(
+      "format = 1\n[nodes]\nb = {}\n"
+      "w = { given_motion = { amplitude_rad = 0.1, frequency_Hz = 1, phase_rad = 0.5, offset_rad = 1 } "
+      "}\n[elements]\n"
+      "J = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 1 }\n"
+      "s = { type = \"shaft_spring\", nodes = [\"w\", \"b\"], stiffness_Nm_per_rad = 100 }\n");
+  const ModelEntry entry{"driven", "", {}, {}};
+  const ModelCase back = read_back(app::export_model(entry, Parameters("driven", {}), model_case));
+  for (const double t : {0.0, 0.3}) {
+    const MotionPoint a = model_case.model.prescriptions()[0].deviation->at(t),
+                      b = back.model.prescriptions()[0].deviation->at(t);
+    CHECK(same_bits({a.value, a.rate, a.acceleration}, {b.value, b.rate, b.acceleration}));
+  }
+}
+
 TEST_CASE("The reference shaft's motion is written where it is one of the catalogue's") {
   const auto driven = [](Motion motion) {
     Model m("driven");
