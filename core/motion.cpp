@@ -14,24 +14,25 @@ Motion constant_speed(double omega, double phi_0) {
   return {[omega, phi_0](double t) { return MotionPoint{phi_0 + omega * t, omega, 0.0}; }, {}, true};
 }
 
-Motion run_up(double omega_0, double omega_1, double t_0, double t_1) {
+Motion run_up(double omega_0, double omega_1, double time_0, double time_1) {
   std::vector<Finding> findings;
   ParameterCheck check("run_up", findings);
   check.finite("omega_0", omega_0, "rad/s");
   check.finite("omega_1", omega_1, "rad/s");
-  check.finite("t_0", t_0, "s");
-  if (!(t_1 > t_0) || !std::isfinite(t_1))
-    check.fail("t_1", to_text(t_1), "s", "must be greater than t_0 = " + to_text(t_0));
+  check.finite("time_0", time_0, "s");
+  if (!(time_1 > time_0) || !std::isfinite(time_1))
+    check.fail("time_1", to_text(time_1), "s", "must be greater than time_0 = " + to_text(time_0));
   if (!findings.empty()) throw ModelError(findings);
-  const double acceleration = (omega_1 - omega_0) / (t_1 - t_0);
+  const double acceleration = (omega_1 - omega_0) / (time_1 - time_0);
   const auto at = [=](double t) {
-    if (t < t_0) return MotionPoint{omega_0 * t, omega_0, 0.0};
-    const double s = std::min(t, t_1) - t_0;
-    MotionPoint p{omega_0 * (t_0 + s) + 0.5 * acceleration * s * s, omega_0 + acceleration * s, acceleration};
-    if (t >= t_1) p = {p.value + omega_1 * (t - t_1), omega_1, 0.0};
+    if (t < time_0) return MotionPoint{omega_0 * t, omega_0, 0.0};
+    const double s = std::min(t, time_1) - time_0;
+    MotionPoint p{omega_0 * (time_0 + s) + 0.5 * acceleration * s * s, omega_0 + acceleration * s,
+                  acceleration};
+    if (t >= time_1) p = {p.value + omega_1 * (t - time_1), omega_1, 0.0};
     return p;
   };
-  return {at, {t_0, t_1}, true};
+  return {at, {time_0, time_1}, true};
 }
 
 }  // namespace drev

@@ -25,8 +25,8 @@ struct Motion {
 /// phi = phi_0 + omega t.  omega in rad/s, phi_0 in rad.
 Motion constant_speed(double omega, double phi_0 = 0.0);
 
-/// Run-up (or run-down) at constant acceleration: omega_0 until t_0, omega_1 from t_1 on, linear
-/// between. Needs t_1 > t_0. rad/s and s.
-Motion run_up(double omega_0, double omega_1, double t_0, double t_1);
+/// Run-up (or run-down) at constant acceleration: omega_0 until time_0, omega_1 from time_1 on, linear
+/// between. Needs time_1 > time_0. rad/s and s.
+Motion run_up(double omega_0, double omega_1, double time_0, double time_1);
 
 }  // namespace drev

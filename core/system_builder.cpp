@@ -215,8 +215,12 @@ void SystemBuilder::set_initial() {
     check.finite("initial rate", initial.rate, turns ? "rad/s" : "m/s");
     const NodeMap& map = system_.node_map_[idx(node)];
     if (map.unknown < 0) {
-      check.fail("initial deviation", to_text(initial.deviation), turns ? "rad" : "m",
-                 "the node is prescribed; its motion is given");
+      const std::string why = "the node is prescribed; its motion is given";
+      // Where one of the two is given, the other is 0.
+      if (initial.deviation != 0.0 || initial.rate == 0.0)
+        check.fail("initial deviation", to_text(initial.deviation), turns ? "rad" : "m", why);
+      if (initial.rate != 0.0)
+        check.fail("initial rate", to_text(initial.rate), turns ? "rad/s" : "m/s", why);
       continue;
     }
     double& z = system_.initial_z_[map.unknown];

@@ -86,7 +86,8 @@ void PeriodicTable::check(ParameterCheck& check, const std::string& parameter,
   if (n >= 2 && !(arguments()[n - 1] - arguments()[0] < period_))
     check.fail(parameter + ".arguments", to_text(arguments()[n - 1] - arguments()[0]), argument_unit,
                "from first to last must be less than the period, " + to_text(period_) +
-                   "; leave out the point that repeats the first one");
+                   (n == 2 ? "; of these two points one repeats the other, give one between"
+                           : "; leave out the point that repeats the first one"));
 }
 
 }  // namespace drev

@@ -64,7 +64,8 @@ int export_command(const CommandLine& line) {
   for (const char* option : {"--torque", "--speed", "--record", "--fmi"})
     if (line.options.count(option) > 0)
       throw ModelError({{kCommandLine, option, "", "", "is for --fmu, which is not there"}});
-  const std::string text = export_model(*model.entry, model.parameters, model.model_case);
+  const RunOptions options = model.file ? model.file->run_options(model.parameters) : RunOptions{};
+  const std::string text = export_model(*model.entry, model.parameters, model.model_case, options);
   if (const std::string left_out = left_out_of(model.model_case); !left_out.empty())
     std::cerr << "drev: left out: " << left_out << "\n";
   const std::optional<std::string> out = line.option("--out");

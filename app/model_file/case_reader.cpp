@@ -181,14 +181,7 @@ class CaseReader {
   void add_motion(const std::string& name, const NodeParams& p, const Part& part) {
     if (p.hold) model_.hold(name);
     if (!std::isnan(p.constant_speed)) model_.constant_speed(name, p.constant_speed);
-    if (p.has_given) {
-      const double w = hz(p.given.frequency);
-      model_.given_motion(name, {[g = p.given, w](double t) {
-                            const double c = g.amplitude * std::cos(w * t + g.phase),
-                                         s = g.amplitude * std::sin(w * t + g.phase);
-                            return MotionPoint{g.offset + c, -w * s, -w * w * c};
-                          }});
-    }
+    if (p.has_given) model_.given_motion(name, {p.given});
     try {
       if (!std::isnan(p.nominal_speed))
         model_.set_reference(name, constant_speed(p.nominal_speed, p.nominal_angle));
@@ -447,13 +440,13 @@ FileCase read_case(const Document& document, const Parameters& parameters, const
   return result;
 }
 
-void set_run_parameters(const Document& document, const std::string& run, std::vector<Parameter>& parameters,
-                        std::vector<Finding>& findings) {
-  const Entry* named = document.run != nullptr ? document.run->find(run) : nullptr;
-  if (run.empty() || named == nullptr) return;
-  const Entry* given = named->value.find("parameters");
+namespace {
+
+/// Of one table, [run] or that of a run.
+void set_parameters(const Document& document, const Value& table, const std::string& where,
+                    std::vector<Parameter>& parameters, std::vector<Finding>& findings) {
+  const Entry* given = table.find("parameters");
   if (given == nullptr) return;
-  const std::string where = "run." + run + ".parameters";
   if (!given->value.is(Value::Kind::table)) {
     findings.push_back(fault_at(given->value.at, where, "must be a table, { name = value }"));
     return;
@@ -484,6 +477,16 @@ void set_run_parameters(const Document& document, const std::string& run, std::v
       }
     }
   }
+}
+
+}  // namespace
+
+void set_run_parameters(const Document& document, const std::string& run, std::vector<Parameter>& parameters,
+                        std::vector<Finding>& findings) {
+  if (document.run == nullptr) return;
+  set_parameters(document, *document.run, "run.parameters", parameters, findings);
+  if (const Entry* named = document.run->find(run); !run.empty() && named != nullptr)
+    set_parameters(document, named->value, "run." + run + ".parameters", parameters, findings);
 }
 
 }  // namespace drev::app

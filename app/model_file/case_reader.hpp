@@ -45,7 +45,7 @@ ReadContext context_of(const Document& document, const Parameters& parameters);
 FileCase read_case(const Document& document, const Parameters& parameters, const std::string& run,
                    bool options_only = false);
 
-/// Values for parameters that a named run sets: laid over the defaults.
+/// Values for parameters that [run] and the named run set: laid over the defaults.
 void set_run_parameters(const Document& document, const std::string& run, std::vector<Parameter>& parameters,
                         std::vector<Finding>& findings);
 

@@ -231,12 +231,19 @@ class DocumentReader {
                           .unit = unit_suffix(entry.key),
                           .low = -kNoLimit,
                           .high = kNoLimit};
-      const Value& value = entry.value;
+      // The file that includes another has the last word, key by key; a plain number or text is the default.
+      const auto included = parameters_.find(entry.key);
+      Value value = entry.value;
+      if (included != parameters_.end()) {
+        value = included->second;
+        value.at = entry.value.at;
+        lay_over(value, as_table(entry.value));
+      }
+      parameters_[entry.key] = as_table(value);
       if (value.is(Value::Kind::table))
         read_parameter_table(value, where, parameter);
       else
         take_number(value, where, parameter);
-      // The file that includes another has the last word.
       const auto same = std::find_if(doc_.parameters.begin(), doc_.parameters.end(),
                                      [&](const Parameter& s) { return s.name == entry.key; });
       if (same != doc_.parameters.end())
@@ -244,6 +251,15 @@ class DocumentReader {
       else
         doc_.parameters.push_back(parameter);
     }
+  }
+
+  static Value as_table(const Value& value) {
+    if (value.is(Value::Kind::table)) return value;
+    Value table;
+    table.kind = Value::Kind::table;
+    table.at = value.at;
+    table.entries.push_back({"default", value.at, value});
+    return table;
   }
 
   bool take_number(const Value& value, const std::string& where, Parameter& parameter) {
@@ -374,6 +390,7 @@ class DocumentReader {
   }
 
   Document& doc_;
+  std::map<std::string, Value> parameters_;  // as tables
   std::vector<std::string> stack_;
   int files_ = 0;
 };
@@ -384,7 +401,7 @@ std::vector<std::string> Document::run_names() const {
   std::vector<std::string> names;
   if (run != nullptr)
     for (const Entry& entry : run->entries)
-      if (entry.value.is(Value::Kind::table)) names.push_back(entry.key);
+      if (entry.value.is(Value::Kind::table) && entry.key != "parameters") names.push_back(entry.key);
   return names;
 }
 

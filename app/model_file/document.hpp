@@ -32,7 +32,7 @@ struct Document {
   bool whole = true;             ///< false: nodes or elements may be missing because of a finding
   std::deque<Value> roots = {};  ///< keeps what the pointers above point to
 
-  /// Names of the tables inside [run].
+  /// Names of the tables inside [run], which are runs but for its parameters.
   std::vector<std::string> run_names() const;
 };
 

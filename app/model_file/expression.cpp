@@ -277,6 +277,9 @@ class Parser {
   double number() {
     double value = 0.0;
     const auto result = std::from_chars(text_.data() + i_, text_.data() + text_.size(), value);
+    if (result.ec == std::errc::result_out_of_range)
+      fail("has the number " + std::string(text_.data() + i_, result.ptr) + " in column " +
+           std::to_string(i_ + 1) + ", which is outside of what a number can be, 1e-307 to 1e308");
     if (result.ec != std::errc{}) unexpected();
     i_ = static_cast<std::size_t>(result.ptr - text_.data());
     return value;
@@ -440,7 +443,7 @@ Formula compile(const std::string& text, const Scope& scope, const std::vector<F
         return Formula(needed(tape, result.value.on(tape)));
       }
       wrong = "the expression \"" + text.substr(0, 80) + "\" is in " + result.unit + ", the key in " + unit +
-              "; si(...) gives it in SI, plain(...) without a unit";
+              result.how_to_fit(unit);
     } catch (const ExpressionError& error) {
       wrong = error.sentence;
     }

@@ -1,6 +1,9 @@
 #include "app/model_file/node_fields.hpp"
 
+#include <drev/core/units.hpp>
 #include <drev/elements/not_given.hpp>
+
+#include <cmath>
 
 namespace drev::app {
 
@@ -17,6 +20,12 @@ NodeParams::NodeParams()
       nominal_speed(kNotGiven),
       run_up{kNotGiven, kNotGiven, 0.0, kNotGiven},
       given{kNotGiven, kNotGiven, 0.0, 0.0} {}
+
+MotionPoint NodeParams::Given::operator()(double t) const {
+  const double w = hz(frequency), c = amplitude * std::cos(w * t + phase),
+               s = amplitude * std::sin(w * t + phase);
+  return {offset + c, -w * s, -w * w * c};
+}
 
 const std::vector<std::string>& node_kind_names() {
   static const std::vector<std::string> names{"rotational", "translational"};
@@ -37,7 +46,7 @@ void list_fields(Fields& f, NodeParams& p) {
       g.number({"time_0", D::time}, p.run_up.time_0);
       g.number({"time_1", D::time}, p.run_up.time_1, Need::required);
     });
-  if (read)
+  if (read || p.has_given)
     p.has_given |= f.group("given_motion", [&](Fields& g) {
       g.number({"amplitude", D::angle, D::length}, p.given.amplitude, Need::required);
       g.number({"frequency", D::frequency}, p.given.frequency, Need::required);

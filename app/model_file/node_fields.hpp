@@ -1,6 +1,7 @@
 #pragma once
 /// What a model file says of a node.
 #include <drev/app/model_file/fields.hpp>
+#include <drev/core/motion.hpp>
 
 namespace drev::app {
 
@@ -18,6 +19,7 @@ struct NodeParams {
   /// Deviation u = offset + amplitude cos(2 pi f t + phase).
   struct Given {
     double amplitude, frequency, phase = 0.0, offset = 0.0;
+    MotionPoint operator()(double t) const;
   };
   bool has_given = false;
   Given given;

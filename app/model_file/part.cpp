@@ -27,12 +27,12 @@ Finding placed(Finding finding, const Part& part, const std::string& place) {
                                                                {"omega", "constant_speed"},
                                                                {"inertia", "mass"},
                                                                {"torque", "force"},
-                                                               {"initial deviation", "initial_"},
-                                                               {"initial rate", "initial_"},
+                                                               {"initial deviation", "initial_angle"},
+                                                               {"initial deviation", "initial_position"},
+                                                               {"initial rate", "initial_speed"},
+                                                               {"initial rate", "initial_velocity"},
                                                                {"omega_0", "run_up"},
-                                                               {"omega_1", "run_up"},
-                                                               {"t_0", "run_up"},
-                                                               {"t_1", "run_up"}};
+                                                               {"omega_1", "run_up"}};
   const std::string stem = finding.parameter.substr(0, finding.parameter.find_first_of(".["));
   FieldPlace best{part.at};
   const auto try_name = [&](const std::string& name) {

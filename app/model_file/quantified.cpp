@@ -21,6 +21,12 @@ bool KnownUnit::fits(const std::string& suffix) const {
   return combined && same(parts, suffix.empty() ? UnitParts{} : unit_parts(suffix));
 }
 
+std::string KnownUnit::how_to_fit(const std::string& suffix) const {
+  if (!combined) return "";
+  return std::string("; ") + (in_si(*this).fits(suffix) ? "si(...) gives it in SI, " : "") +
+         "plain(...) gives the number without a unit";
+}
+
 bool KnownUnit::like(const KnownUnit& other) const {
   return plain() || other.plain() || unit == other.unit ||
          ((combined || other.combined) && same(parts, other.parts));

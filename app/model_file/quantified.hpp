@@ -20,6 +20,8 @@ struct KnownUnit {
   bool plain() const { return unit.empty(); }
   /// Whether it may stand where this unit is needed.
   bool fits(const std::string& suffix) const;
+  /// What makes it fit, for a message: "; si(...) gives it in SI, ..."; empty for a single unit.
+  std::string how_to_fit(const std::string& suffix) const;
   /// Whether both may be added.
   bool like(const KnownUnit& other) const;
 };

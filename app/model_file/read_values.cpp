@@ -22,8 +22,7 @@ std::optional<double> read_number(const Value& value, const std::string& unit, c
     const Quantified result = evaluate(value.text, context.scope);
     if (!result.fits(unit))
       return refuse("the expression \"" + value.text + "\" is in " + result.unit + ", the key " +
-                    (unit.empty() ? "has no unit" : "in " + unit) +
-                    (result.combined ? "; si(...) gives it in SI, plain(...) without a unit" : ""));
+                    (unit.empty() ? "has no unit" : "in " + unit) + result.how_to_fit(unit));
     return result.value;
   } catch (const ExpressionError& error) {
     return refuse(error.sentence);

@@ -88,9 +88,10 @@ void RunSection::list(Fields& f, Params& p) {
 RunSection::RunSection(const Document& document, const std::string& run, ReadContext& context) {
   const ListFields fields = [&](Fields& f) { list(f, params_); };
   if (document.run != nullptr) {
-    const std::vector<std::string> names = document.run_names();
+    std::vector<std::string> others = document.run_names();
+    others.push_back("parameters");
     tables_.push_back(document.run);
-    read_fields(*document.run, "run", NodeKind::rotational, {names.begin(), names.end()}, fields, context);
+    read_fields(*document.run, "run", NodeKind::rotational, {others.begin(), others.end()}, fields, context);
     if (const Entry* named = document.run->find(run); !run.empty() && named != nullptr) {
       tables_.push_back(&named->value);
       read_fields(named->value, "run." + run, NodeKind::rotational, {"parameters"}, fields, context);

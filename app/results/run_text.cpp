@@ -211,7 +211,7 @@ std::string contact_rows(const RunResult& r) {
 }
 
 std::string energy_row(const EnergyBalance& e) {
-  if (!(e.scale > 0.0)) return labelled("Energy balance", "no energy in the run");
+  if (!(e.scale > 0.0)) return labelled("Energy balance", "no energy but that of the nominal rotation");
   if (std::abs(e.relative_error()) < 1e-12) return labelled("Energy balance", "holds to rounding");
   return labelled("Energy balance", "off by " + digits(100.0 * e.relative_error(), 2) + " % of " +
                                         digits(e.scale, 3) + " J" +

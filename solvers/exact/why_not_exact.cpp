@@ -27,8 +27,8 @@ std::optional<std::string> why_not_exact(const System& system) {
   for (int k = 0; k < system.prescribed_count(); ++k)
     if (system.prescribed()[idx(k)].at && !system.prescribed()[idx(k)].piecewise_quadratic)
       return "the motion of " + system.node_names()[idx(system.prescribed_node(k))] +
-             " is an unknown function; one with constant acceleration between its breakpoints can "
-             "say so (Motion::piecewise_quadratic)";
+             " is no polynomial of time, which is what the series knows; take dormand_prince or an implicit "
+             "method";
   return std::nullopt;
 }
 

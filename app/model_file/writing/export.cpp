@@ -20,7 +20,8 @@ namespace {
 
 class CaseWriter {
  public:
-  CaseWriter(const ModelCase& model_case) : model_case_(model_case), model_(model_case.model) {}
+  CaseWriter(const ModelCase& model_case, const RunOptions& options)
+      : model_case_(model_case), model_(model_case.model), options_(options.values) {}
 
   std::string text(const ModelEntry& entry, const Parameters& parameters) {
     const std::string nodes = write_nodes(), elements = write_elements();
@@ -56,7 +57,10 @@ class CaseWriter {
     std::map<std::string, NodeParams> params;
     for (const Model::Prescription& p : model_.prescriptions()) {
       NodeParams& node = params[model_.name_of(p.node)];
-      if (p.deviation)
+      if (const auto* given = p.deviation ? p.deviation->at.target<NodeParams::Given>() : nullptr) {
+        node.given = *given;
+        node.has_given = true;
+      } else if (p.deviation)
         refuse(model_.name_of(p.node), "its given motion is a function of C++");
       else if (p.omega)
         node.constant_speed = *p.omega;
@@ -152,6 +156,13 @@ class CaseWriter {
     };
     add("duration_s", toml_number(model_case_.duration));
     add("step_s", toml_number(model_case_.default_step));
+    const auto add_option = [&](const std::string& key, bool text, const std::string& unit = "") {
+      if (const auto given = options_.find("--" + key); given != options_.end())
+        add((key + unit).c_str(), text ? toml_text(given->second) : given->second);
+    };
+    add_option("method", true);
+    add_option("tolerance", false);
+    add_option("accuracy", false);
     if (!model_case_.deflection.empty()) add("deflection", toml_text(model_case_.deflection));
     add("torques", toml_texts(model_case_.torques));
     if (model_case_.static_turn != 0.0) add("static_turn_rad", toml_number(model_case_.static_turn));
@@ -161,6 +172,7 @@ class CaseWriter {
     else if (settle)
       add("settle", toml_text("auto"));
     add("record", toml_texts(model_case_.channels));
+    add_option("every", false, "_s");
     return text;
   }
 
@@ -186,6 +198,7 @@ class CaseWriter {
 
   const ModelCase& model_case_;
   const Model& model_;
+  const std::map<std::string, std::string>& options_;
   TableStore store_;
   std::map<std::string, NodeKind> kinds_;
   std::vector<Finding> findings_;
@@ -202,8 +215,9 @@ std::string left_out_of(const ModelCase& model_case) {
          " }: a written file has no parameters, so that it is judged without a cylinder that misfires";
 }
 
-std::string export_model(const ModelEntry& entry, const Parameters& parameters, const ModelCase& model_case) {
-  return CaseWriter(model_case).text(entry, parameters);
+std::string export_model(const ModelEntry& entry, const Parameters& parameters, const ModelCase& model_case,
+                         const RunOptions& options) {
+  return CaseWriter(model_case, options).text(entry, parameters);
 }
 
 }  // namespace drev::app

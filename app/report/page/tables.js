@@ -336,7 +336,7 @@ function showEnergyTable(section) {
             ? `The balance is off by ${percent(Math.abs(e.worst_imbalance_J / e.scale_J), 2)} of the ` +
                 `largest energy, worst at ` +
                 `${sig(e.worst_at_time_s)} s. What is off is energy that the method itself gained or lost.`
-            : "There was no energy in the run.",
+            : "There was no energy but that of the nominal rotation.",
         ),
       ),
     );

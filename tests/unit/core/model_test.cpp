@@ -256,6 +256,8 @@ TEST_CASE("Initial conditions") {
     m.hold("motor");
     m.set_initial("motor", 0.1, 0.0);
     CHECK(only_fault(m, {"pump_set/motor", "initial deviation = 0.1 rad", "is prescribed"}));
+    m.set_initial("motor", 0.0, 2.0);
+    CHECK(count_with(findings_of(m), {"initial rate = 2 rad/s", "is prescribed"}) == 1);
   }
   SECTION("not finite") {
     m.set_initial("motor", kInfinity, kNan);

@@ -86,6 +86,28 @@ TEST_CASE("Where runs start and from when on figures are taken: read, exported a
   CHECK_FALSE(back.settle->time);
 }
 
+TEST_CASE("What a file says of its run is in its export, but for the folder of its results") {
+  const auto options_of = [](const std::string& text, std::string* written) {
+    const app::ModelFile file(text, "own.toml", "");
+    const Parameters parameters(file.entry().name, file.entry().parameters);
+    const app::RunOptions options = file.run_options(parameters);
+    if (written != nullptr)
+      *written = app::export_model(file.entry(), parameters, file.entry().build(parameters), options);
+    return options.values;
+  };
+  const std::string model =
+      "format = 1\n[parameters]\nn = 3\n[nodes]\na = {}\n[elements]\n"
+      "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n[run]\nout = \"results\"\n";
+  for (const char* run :
+       {"method = \"sdirk4\"\ntolerance = \"n*1e-6\"\nevery_ms = 0.1\n", "accuracy = 1e-3\n"}) {
+    std::string written;
+    auto given = options_of(model + run, &written);
+    given.erase("--out");
+    INFO(written);
+    CHECK(options_of(written, nullptr) == given);
+  }
+}
+
 TEST_CASE("Every built-in model, exported and read back, gives the same bits") {
   struct Case {
     const char* model;
@@ -199,6 +221,22 @@ TEST_CASE("Every element, exported and read back, gives the same bits") {
   CHECK(app::export_model(entry, Parameters("all", {}), back) == text);
   model_case.model.hold("pinion");
   check_same(read_back(app::export_model(entry, Parameters("all", {}), model_case)), model_case, 0.02);
+}
+
+TEST_CASE("A given motion of a file is written as it was given") {
+  const ModelCase model_case = read_back(
+      "format = 1\n[nodes]\nb = {}\n"
+      "w = { given_motion = { amplitude_rad = 0.1, frequency_Hz = 1, phase_rad = 0.5, offset_rad = 1 } "
+      "}\n[elements]\n"
+      "J = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 1 }\n"
+      "s = { type = \"shaft_spring\", nodes = [\"w\", \"b\"], stiffness_Nm_per_rad = 100 }\n");
+  const ModelEntry entry{"driven", "", {}, {}};
+  const ModelCase back = read_back(app::export_model(entry, Parameters("driven", {}), model_case));
+  for (const double t : {0.0, 0.3}) {
+    const MotionPoint a = model_case.model.prescriptions()[0].deviation->at(t),
+                      b = back.model.prescriptions()[0].deviation->at(t);
+    CHECK(same_bits({a.value, a.rate, a.acceleration}, {b.value, b.rate, b.acceleration}));
+  }
 }
 
 TEST_CASE("The reference shaft's motion is written where it is one of the catalogue's") {

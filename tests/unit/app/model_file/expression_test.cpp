@@ -64,6 +64,8 @@ TEST_CASE("Units go with the values") {
   CHECK(evaluate("sqrt(gap_mm^2 + play_mm^2)", kScope).fits("mm"));
   CHECK_FALSE(evaluate("gap_mm^2", kScope).fits("mm"));
   CHECK(evaluate("si(gap_mm)*f_Hz", kScope).fits("m_per_s"));
+  CHECK(evaluate("gap_mm*f_Hz", kScope).how_to_fit("m_per_s").find("si(...)") != std::string::npos);
+  CHECK(evaluate("si(gap_mm)", kScope).how_to_fit("Nm") == "; plain(...) gives the number without a unit");
   CHECK(evaluate("si(gap_mm)", kScope).value == Approx(0.15e-3).epsilon(1e-14));
   CHECK(evaluate("plain(gap_mm)", kScope).plain());
   CHECK(evaluate("gap_mm*f_Hz/(play_mm*f_Hz)", kScope).plain());
@@ -129,7 +131,7 @@ TEST_CASE("Faults of expressions are named") {
       {"ordre[1]", "did you mean 'order'?"},
       {"position(order, 10)", "seeks 10, which the list does not hold"},
       {"position(order)", "lacks a ','"},
-      {"1e999", "has '1' in column 1"},
+      {"2*1e999", "has the number 1e999 in column 3, which is outside"},
       {".", "has '.' in column 1"},
       {"gap_mm*f_Hz + gap_mm", "adds mm*Hz and mm"},
       {"sqrt(-1)", "takes the root of -1"},

@@ -78,8 +78,8 @@ const std::vector<Fault>& faults() {
        "belongs to translational nodes; on a rotational one"},
       {"gear = {}", "gear = { hold = @1 }", "must be true or false, not the number 1"},
       {"gear = {}", "gear = { nominal_speed_rpm = @inf }", "must be finite, not infinity"},
-      {"gear = {}", "gear = { @run_up = { speed_0_rpm = 0, speed_1_rpm = 100, time_0_s = 2, time_1_s = 1 } }",
-       "t_1 = 1 s, must be greater than t_0"},
+      {"gear = {}", "gear = { run_up = { speed_0_rpm = 0, speed_1_rpm = 100, time_0_s = 2, @time_1_s = 1 } }",
+       "time_1 = 1 s, must be greater than time_0"},
       {"\"unit_{i}\" = {}", "\"unit_{i}\" = {}\n@unit_2 = {}", "the name unit_2 is used twice; first in"},
       // elements
       {"J_gear = { type = \"inertia\"", "J_gear = { type = @\"inertai\"", "did you mean 'inertia'?"},

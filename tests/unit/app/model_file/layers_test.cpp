@@ -97,6 +97,27 @@ TEST_CASE("Nodes and elements of a base file are changed key by key, or replaced
   CHECK(system.initial_deviation()[0] == 0.5);
 }
 
+TEST_CASE("Parameters of a base file are changed key by key, a plain value being the default") {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "base.toml")
+      << "format = 1\n[parameters]\nk = { default = 100, min = 1, max = 1000, meaning = \"stiff\" }\n"
+         "n = { default = 3, whole = true }\nm = 2\nmode = { default = \"x\", choices = [\"x\", \"y\"] }\n"
+         "[nodes]\na = {}\n[elements]\nJ = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n";
+  const auto parameters = [&](const std::string& own) {
+    std::ofstream(folder / "main.toml") << kInclude << "[parameters]\n" << own;
+    return app::ModelFile((folder / "main.toml").string(), "").entry().parameters;
+  };
+  const auto all = parameters("k = 200\nn = { default = 4 }\nm = { min = 1 }\nmode = \"y\"\n");
+  REQUIRE(all.size() == 4);
+  CHECK((all[0].default_text == "200" && all[0].low == 1.0 && all[0].high == 1000.0));
+  CHECK(all[0].meaning == "stiff");
+  CHECK((all[1].default_text == "4" && all[1].kind == Parameter::Kind::integer));
+  CHECK((all[2].default_text == "2" && all[2].low == 1.0));
+  CHECK((all[3].default_text == "y" && all[3].choices.size() == 2));
+  CHECK_THROWS_WITH(parameters("k = { default = 5000 }\n"),
+                    Catch::Contains("main.toml:4") && Catch::Contains("5000 is not between min and max"));
+}
+
 TEST_CASE("A table's name is filled in, as a file's is") {
   const test::TemporaryFolder folder;
   const ModelCase model_case = case_of(folder, kInclude);

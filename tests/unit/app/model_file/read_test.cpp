@@ -218,6 +218,19 @@ TEST_CASE("Runs: a named one is laid over [run]") {
   CHECK(options.at("--tolerance") == to_text(5 * 1e-6));
 }
 
+TEST_CASE("Parameters of [run] are laid over their defaults, and those of a named run over them") {
+  const std::string text = std::string("[parameters]\nn = 1\nm = 1\n") + kDisc +
+                           "t = { type = \"applied_torque\", node = \"a\", torque_Nm = \"10*n+m\" }\n"
+                           "[run]\nparameters = { n = 2, m = 3 }\n[run.other]\nparameters = { m = 4 }\n";
+  const auto torque = [&](const std::string& run) {
+    return params<AppliedTorque>(read(text, {}, run), "t").table->values();
+  };
+  CHECK(torque("") == std::vector<double>{23.0});
+  CHECK(torque("other") == std::vector<double>{24.0});
+  CHECK(app::ModelFile("format = 1\n" + text, "test.toml", "").run_names() ==
+        std::vector<std::string>{"other"});
+}
+
 TEST_CASE("A named run is no key of [run], whatever its name") {
   const ModelCase model_case =
       read(std::string(kDisc) + "[run]\nduration_s = 1\n[run.record_all]\nstep_s = 1e-5\n" +
