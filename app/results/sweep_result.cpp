@@ -171,6 +171,14 @@ void note_bent_laws(const System& system, const LinearSweep& sweep, std::vector<
   }
 }
 
+/// Speeds at which the vibration stated is one of several [rpm].
+std::vector<double> several_amplitudes(const SweepRequest& request, const LinearSweep& sweep) {
+  std::vector<double> speeds;
+  for (std::size_t i = 0; i < sweep.several_amplitudes.size(); ++i)
+    if (sweep.several_amplitudes[i] != 0) speeds.push_back(request.speeds_rpm[i]);
+  return speeds;
+}
+
 }  // namespace
 
 std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSweep& sweep) {
@@ -193,6 +201,12 @@ std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSw
                              "up at a node. Vibration does not depend on it.",
                              request.options.balance));
   }
+  if (const std::vector<double> speeds = several_amplitudes(request, sweep); !speeds.empty())
+    notes.push_back("At " + std::to_string(speeds.size()) + " of " + std::to_string(sweep.speeds.size()) +
+                    " speeds, from " + digits(speeds.front(), kDigits) + " to " +
+                    digits(speeds.back(), kDigits) +
+                    " rpm, several amplitudes satisfy the tables of the elements that follow the amplitude: "
+                    "the largest is stated. The train may jump to a smaller one.");
   if (std::isnan(sweep.cycle))
     notes.emplace_back(
         "The orders have no common cycle: maxima, minima and half ranges of their sum are not stated.");
@@ -302,6 +316,7 @@ Json sweep_object(const SweepRequest& request, const LinearSweep& sweep) {
       sweep.most_left_out.share > 0.0
           ? Json({{"load", sweep.most_left_out.load}, {"share", number(sweep.most_left_out.share)}})
           : Json();
+  object["several_amplitudes_rpm"] = several_amplitudes(request, sweep);
   object["note"] = text_or_null(request.model.model_case.note);
   return object;
 }

@@ -5,6 +5,7 @@
 /// the mean torque and the effective amplitude sqrt(sum |X_h|^2) over all orders h. Methods in time do not see it.
 #include <complex>
 #include <optional>
+#include <vector>
 
 namespace drev {
 
@@ -28,7 +29,8 @@ class FrequencyStiffness {
   /// Whether beyond_held() does, at the load it is asked for.
   virtual bool follows_frequency() const { return true; }
   virtual bool follows_mean_torque() const { return false; }
-  virtual bool follows_amplitude() const { return false; }
+  /// Amplitudes between which it follows them smoothly, ascending [rad]: it is constant outside. Empty: it does not follow any.
+  virtual std::vector<double> amplitudes() const { return {}; }
   /// Of its own matrices: mean torque over mean deflection [N m/rad].
   virtual double static_stiffness() const { return 0.0; }
   /// The static stiffness that the element states less that of its matrices [N m/rad]; the frequency domain's means have it.

@@ -208,7 +208,7 @@ void ViscoelasticStiffness::describe(const LocalRow& b, int first, double dampin
     terms.speed_ratio_constraints.push_back({.b = alone});
     torque += branches_[j].stiffness * row;
   }
-  if (loses() || follows_mean_torque() || follows_amplitude())
+  if (loses() || follows_mean_torque() || !amplitudes().empty())
     terms.frequency_stiffnesses.push_back({b, this});
   terms.outputs.push_back({.suffix = "", .stiffness = torque, .damping = damping * b, .deflection = b});
 }

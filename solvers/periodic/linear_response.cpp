@@ -61,7 +61,7 @@ LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& o
   carried_.resize(system.frequency_terms().size());
   for (const FrequencyTerm& term : system.frequency_terms()) {
     follows_mean_ |= term.stiffness->follows_mean_torque();
-    follows_amplitude_ |= term.stiffness->follows_amplitude();
+    follows_amplitude_ |= !term.stiffness->amplitudes().empty();
   }
   all_constant_ = !follows_mean_ && !follows_amplitude_ &&
                   std::find(term_constant_.begin(), term_constant_.end(), false) == term_constant_.end();
@@ -333,6 +333,7 @@ double LinearResponse::amplitude_of(std::size_t t, double speed) {
 void LinearResponse::find_carried_loads(double speed) {
   constexpr double kClose = 1e-12;  // relative tolerance of amplitudes [-]
   constexpr int kMostRounds = 100, kMostSteps = 200;
+  constexpr int kParts = 16;  // of the distance of two amplitudes of a table, each with one solution at most
   const std::vector<FrequencyTerm>& terms = system_.frequency_terms();
   if (follows_mean_) {
     Vector unbalanced, sums;
@@ -342,6 +343,7 @@ void LinearResponse::find_carried_loads(double speed) {
           (terms[t].stiffness->static_stiffness() + terms[t].stiffness->static_beyond_matrices()) *
           product(terms[t].z, z);
   }
+  several_amplitudes_ = false;
   if (!follows_amplitude_) return;
   const auto orders = static_cast<Eigen::Index>(orders_.size()),
              count = static_cast<Eigen::Index>(sections_.size());
@@ -360,30 +362,38 @@ void LinearResponse::find_carried_loads(double speed) {
     bool moved = false;
     std::size_t number = 0;
     for (std::size_t t = 0; t < terms.size(); ++t) {
-      if (!terms[t].stiffness->follows_amplitude()) continue;
+      const std::vector<double> table = terms[t].stiffness->amplitudes();
+      if (table.empty()) continue;
       several = number++ > 0;
       const double before = carried_[t].amplitude;
       const auto beyond = [&](double a) {  // amplitude of the response minus the assumed amplitude
         carried_[t].amplitude = a;
         return amplitude_of(t, speed) - a;
       };
-      // Between 0 and an amplitude that the response does not reach.
-      IllinoisBracket b{0.0, beyond(0.0)};
-      if (!std::isfinite(b.f_low)) refuse(t);
-      b.high = b.f_low;
-      int steps = 0;
-      while (b.high > 0.0 && (b.f_high = beyond(b.high)) > 0.0) {
-        b.low = b.high, b.f_low = b.f_high, b.high *= 2.0;
-        if (!std::isfinite(b.f_high) || ++steps > kMostSteps) refuse(t);
+      std::vector<double> places{0.0};
+      for (const double last : table)
+        for (int part = 1; part <= kParts && last > places.back(); ++part)
+          places.push_back(part < kParts ? places.back() + (last - places.back()) / (kParts - part + 1)
+                                         : last);
+      IllinoisBracket b{.high = places.back(), .f_high = beyond(places.back())};
+      // Beyond the table the response is constant.
+      double found = b.f_high > 0.0 ? b.high + b.f_high : 0.0;
+      int solutions = b.f_high > 0.0 ? 1 : 0;
+      for (std::size_t i = places.size() - 1; i-- > 0; b.high = b.low, b.f_high = b.f_low) {
+        b.low = places[i], b.f_low = beyond(b.low);
+        if (!std::isfinite(b.f_low) || !std::isfinite(b.f_high)) refuse(t);
+        if ((b.f_low > 0.0) == (b.f_high > 0.0) || solutions++ > 0) continue;
+        IllinoisBracket root = b;
+        found = root.high;
+        for (int steps = 0; root.f_high != 0.0 && root.high - root.low > kClose * root.high;) {
+          if (++steps > kMostSteps) refuse(t);
+          found = root.next();
+          const double at = beyond(found);
+          if (std::abs(at) <= 1e-3 * kClose * found) break;
+          root.take(found, at);
+        }
       }
-      double found = b.high;
-      while (b.high > 0.0 && b.f_high < 0.0 && b.high - b.low > kClose * b.high) {
-        if (++steps > kMostSteps) refuse(t);
-        found = b.next();
-        const double at = beyond(found);
-        if (std::abs(at) <= 1e-3 * kClose * found) break;
-        b.take(found, at);
-      }
+      several_amplitudes_ |= solutions > 1;
       carried_[t].amplitude = found;
       moved |= std::abs(found - before) > 10.0 * kClose * found;
     }

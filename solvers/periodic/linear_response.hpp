@@ -43,6 +43,9 @@ class LinearResponse {
     Point near = {};                   ///< response to the order next to the speed
   };
   Resonance resonance(double speed, int order);
+  /// Whether the last response is one of several, under as many amplitudes that a complex stiffness may follow: the one with the
+  /// largest.
+  bool several_amplitudes() const { return several_amplitudes_; }
   /// Throws SolverError where the static stiffness is singular although no part floats.
   void mean(double speed, Point& point);
   /// Right side of the one order that vibration() solved last, and the sections' amplitudes where z is the motion there; both as
@@ -64,7 +67,7 @@ class LinearResponse {
   /// to the stiffness, Im k*/omega b b' to the damping.
   void add_frequency_terms(double omega);
   /// Finds the loads that the complex stiffnesses carry at the speed, where they depend on them: the mean
-  /// torque from the static equilibrium; the amplitude by solving A = A(response under A) for one after the
+  /// torque from the static equilibrium; the amplitude by solving A = A(response under A), the largest, for one after the
   /// other until all are satisfied. Throws SolverError.
   void find_carried_loads(double speed);
   /// sqrt(sum |X_h|^2) of term t in the response under the loads that are set.
@@ -124,7 +127,7 @@ class LinearResponse {
   std::optional<ComplexElimination> elimination_;
   std::optional<LaneElimination> lanes_;
   // True: some complex stiffness depends on the mean torque, or on the amplitude.
-  bool follows_mean_ = false, follows_amplitude_ = false;
+  bool follows_mean_ = false, follows_amplitude_ = false, several_amplitudes_ = false;
   std::vector<CarriedLoad> carried_;   // load that each frequency term carries
   std::vector<double> twist_squares_;  // |X_h|^2 of each term, summed over the orders that were solved
   Point trial_;

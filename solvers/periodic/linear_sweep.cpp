@@ -177,6 +177,7 @@ LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options
   for (const LinearResponse::Section& section : response.sections())
     sweep.sections.push_back(to_section(section, static_cast<Eigen::Index>(sweep.orders.size()), speeds));
   sweep.unbalanced.assign(sweep.floating_parts.size(), Vector::Zero(speeds));
+  sweep.several_amplitudes.assign(sweep.speeds.size(), 0);
   sweep.input_power.setZero(speeds);
   sweep.dissipated_power.setZero(speeds);
   std::vector<Vector> load_sums(sweep.unbalanced.size(), Vector::Zero(speeds));
@@ -200,6 +201,7 @@ LinearSweep sweep_linear(const System& system, const LinearSweepOptions& options
         }
       const double speed = sweep.speeds[static_cast<std::size_t>(i)];
       here.vibration(speed, worker.point);
+      sweep.several_amplitudes[static_cast<std::size_t>(i)] = here.several_amplitudes();
       here.mean(speed, worker.point);
       worker.extremes.find(worker.point, worker.sum);
       put(worker.point, worker.extremes, i, sweep);

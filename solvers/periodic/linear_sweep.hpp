@@ -145,6 +145,8 @@ struct LinearSweep {
   double growth_speed = std::numeric_limits<double>::quiet_NaN();
   /// Unbalanced mean torque of each floating part, referred to the reference shaft [N m]: [part][speed].
   std::vector<Vector> unbalanced;
+  /// For each speed: several amplitudes of the elements that follow them satisfy the equations, and the largest is shown.
+  std::vector<char> several_amplitudes;
   std::vector<std::string> floating_parts;  ///< name of one node of each floating part
   std::vector<double> unbalanced_scale;     ///< for each part: largest sum over its loads of |mean torque|
   Vector input_power, dissipated_power;     ///< of the vibration at each speed [W]; equal within rounding

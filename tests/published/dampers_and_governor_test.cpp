@@ -18,6 +18,7 @@
 #include <drev/solvers/run/recorder.hpp>
 
 #include <cmath>
+#include <complex>
 
 #include "tests/catch.hpp"
 
@@ -154,6 +155,48 @@ TEST_CASE("Coupling whose stiffness and loss follow the amplitude: equivalent li
                                                                .highest_frequency = 60});
   CHECK(at.at(250.0).real() == Approx(2e5 * 0.97));
   CHECK(at.at(250.0).imag() == Approx(2e5 * 0.97 * 0.095));
+}
+
+TEST_CASE("Where several amplitudes of a coupling satisfy its table the largest is taken, and it is said",
+          "[train_elements]") {
+  // k = 400 to 100, eta = 0.1 to 0.2 over 0 to 0.1 rad, J = 10 and 4, torque p on the first: x_o = p mu/10 / (k* - mu (o w)^2),
+  // mu = 40/14.
+  constexpr double mu = 40.0 / 14.0, torque = 20.0;
+  const ElasticCoupling::Params coupling{
+      .material = {.by_amplitude = {{0.0, 0.1}, {400.0, 100.0}, {0.1, 0.2}},
+                   .lowest_frequency = 1,
+                   .highest_frequency = 2,
+                   .permitted_error = 0.99}};
+  const auto response = [&](double a, double w) {
+    const double part = std::min(a / 0.1, 1.0), k = 400.0 - 300.0 * part, eta = 0.1 + 0.1 * part;
+    double square = 0.0;
+    for (const double order : {1.0, 2.0})
+      square +=
+          std::norm(torque * mu / 10.0 / (k * std::complex<double>(1.0, eta) - mu * order * order * w * w));
+    return std::sqrt(square);
+  };
+  std::vector<double> speeds;
+  for (double w = 2.0; w < 13.0; w += 0.5) speeds.push_back(w);
+  const System system = two_masses_coupled(coupling, 5.0, {{1.0, torque, 0.0}, {2.0, torque, 0.0}});
+  const LinearSweep sweep = sweep_linear(system, {.speeds = speeds, .orders = {1.0, 2.0}, .refine = false});
+  const SweepSection& section = section_of(sweep, "coupling.torque_Nm");
+  int ambiguous = 0;
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    INFO(speeds[i] << " rad/s");
+    const auto at = static_cast<Eigen::Index>(i);
+    const double found = std::hypot(std::abs(section.twist(0, at)), std::abs(section.twist(1, at)));
+    CHECK(response(found, speeds[i]) == Approx(found).epsilon(1e-9));
+    int solutions = 0;
+    double largest = 0.0;
+    for (double a = 1e-4; a < 2.0; a += 1e-4)
+      if ((response(a, speeds[i]) > a) != (response(a + 1e-4, speeds[i]) > a + 1e-4))
+        ++solutions, largest = a;
+    CHECK(found == Approx(largest + 0.5e-4).margin(1e-4));
+    CHECK((solutions > 1) == (sweep.several_amplitudes[i] != 0));
+    ambiguous += solutions > 1 ? 1 : 0;
+  }
+  CHECK(ambiguous > 3);
+  CHECK(ambiguous < static_cast<int>(speeds.size()));
 }
 
 TEST_CASE("Couplings whose stiffness follows mean torque and amplitude, two of them: each is what it carries",
