@@ -27,6 +27,13 @@ void Assembler::set_time(double t) {
       if (system_.prescribed()[k].at) u_[k] = system_.prescribed()[k].at(t);
 }
 
+void Assembler::set_time_ahead(double t, double ahead) {
+  set_time(t + ahead);
+  if (!system_.reference()) return;
+  nominal_ = system_.reference()->at(t);
+  nominal_.value += nominal_.rate * ahead;
+}
+
 void Assembler::stand_at_angle(double phi) {
   nominal_ = {phi, 0.0, 0.0};
   known_found_ = false;

@@ -19,6 +19,8 @@ class Assembler {
   const System& system() const { return system_; }
   /// Moves to time t [s]: nominal motion phi(t) and prescribed motions u(t).
   void set_time(double t);
+  /// As set_time(t + ahead), with the reference shaft turning evenly from t on: phi(t) + w(t) ahead, w(t), and dw/dt(t).
+  void set_time_ahead(double t, double ahead);
   /// Stands still at nominal angle phi [rad] of the reference shaft (statics): no nominal rate; known
   /// motions keep their value at the time set last, but neither rate nor acceleration.
   void stand_at_angle(double phi);

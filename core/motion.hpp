@@ -20,6 +20,8 @@ struct Motion {
   std::vector<double> breakpoints = {};  ///< s
   /// The acceleration is constant between breakpoints, so that the motion is a polynomial of t there.
   bool piecewise_quadratic = false;
+  /// Of a motion that repeats [Hz], > 0; 0: it does not repeat, or its period is not known.
+  double frequency = 0.0;
 };
 
 /// phi = phi_0 + omega t.  omega in rad/s, phi_0 in rad.

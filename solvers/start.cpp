@@ -23,20 +23,24 @@ constexpr int kTimesOfCycle = 97;        // times of a cycle at which loads are 
 constexpr double kSameLoad = 1e-8;       // relative
 constexpr double kMostCycles = 1e5;      // cycles of a run that settles
 
-/// The largest frequency that divides all frequencies of loads [Hz]; 0: there is none, or it is too low.
+/// The largest frequency that divides all frequencies of loads and given motions [Hz]; 0: there is none, or it is too low.
 double shared_frequency(const System& system) {
-  double shared = 0.0, highest = 0.0;
+  std::vector<double> frequencies;
   for (const LoadTerm& term : system.loads())
-    for (const double frequency : term.load->frequencies()) {
-      highest = std::max(highest, frequency);
-      double a = std::max(frequency, shared), b = std::min(frequency, shared);
-      while (b > kSameFrequency * highest * kMostMultiple) {
-        const double rest = std::remainder(a, b);
-        a = b;
-        b = std::abs(rest);
-      }
-      shared = a;
+    for (const double frequency : term.load->frequencies()) frequencies.push_back(frequency);
+  for (const Motion& motion : system.prescribed())
+    if (motion.frequency > 0.0) frequencies.push_back(motion.frequency);
+  double shared = 0.0, highest = 0.0;
+  for (const double frequency : frequencies) {
+    highest = std::max(highest, frequency);
+    double a = std::max(frequency, shared), b = std::min(frequency, shared);
+    while (b > kSameFrequency * highest * kMostMultiple) {
+      const double rest = std::remainder(a, b);
+      a = b;
+      b = std::abs(rest);
     }
+    shared = a;
+  }
   return shared * kMostMultiple > highest ? shared : 0.0;
 }
 
@@ -86,7 +90,7 @@ bool repeats(const System& system, double cycle) {
 }
 
 /// The first cycle in which all that acts repeats, at the speed of the start [s]; where none is, two turns of the reference shaft,
-/// or what the loads' harmonics share; 0: there is none.
+/// or what the loads and given motions share; 0: there is none.
 double mean_cycle_of(const System& system) {
   std::vector<double> cycles;
   if (const auto& reference = system.reference(); reference && reference->at)
@@ -163,7 +167,7 @@ FoundStart start_periodic(const System& system, const StartOptions& options) {
   std::vector<double> cycles = cycles_of(system, options);
   std::string reason =
       cycles.empty()
-          ? "no reference shaft turns and no load has harmonics in time, so that the period is not known"
+          ? "no reference shaft turns, and no frequencies of loads and given motions share a period"
           : "what acts on the model repeats neither after the cycle of the model nor after up to 20 "
             "turns of the reference shaft, or of a shaft on which something acts";
   std::erase_if(cycles, [&](double cycle) { return !repeats(system, cycle); });

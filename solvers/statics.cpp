@@ -51,7 +51,7 @@ StaticSolver::~StaticSolver() = default;
 Vector StaticSolver::mean_loads(double t, double length) {
   Vector mean = zero_, p(zero_.size());
   for (int i = 0; i < kMeanSamples; ++i) {
-    assembler_->set_time(t + length * i / kMeanSamples);
+    assembler_->set_time_ahead(t, length * i / kMeanSamples);
     assembler_->external(zero_, zero_, p);
     mean += p / kMeanSamples;
   }

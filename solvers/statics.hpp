@@ -18,7 +18,7 @@ struct StaticOptions {
   double nominal_angle = 0.0;  ///< rad, of the reference shaft
   double t = 0.0;              ///< s, for loads and known motions that depend on time
   /// > 0: moving with the nominal motion from t on, under the mean over this time [s] of what acts where
-  /// nothing deviates, drag of the nominal speed among it; nominal_angle has no meaning then.
+  /// nothing deviates, at the nominal speed and acceleration of t; nominal_angle has no meaning then.
   double mean_over = 0.0;
   SparseNewtonOptions newton = {};
 };

@@ -22,6 +22,8 @@ struct MassElasticColumn {
   Dimension dimension;
   double low;
 };
+/// What a row says of the shaft to the next one.
+constexpr const char* kOfShaft[] = {"stiffness", "damping", "ratio", "diameter", "bore"};
 constexpr MassElasticColumn kColumns[] = {{"inertia", Dimension::inertia, 0.0},
                                           {"stiffness", Dimension::torsional_stiffness, 0.0},
                                           {"damping", Dimension::torsional_damping, 0.0},
@@ -89,6 +91,8 @@ class MassElasticReader {
       const auto found = values.find(name);
       return found == values.end() ? std::nullopt : std::optional(found->second);
     }
+    /// A table may fill the columns that do not apply with zeros.
+    bool has(const std::string& name) const { return get(name).value_or(0.0) != 0.0; }
   };
   struct Header {
     std::string name;  ///< empty: not taken
@@ -182,8 +186,10 @@ class MassElasticReader {
       if (const auto damping = row.get("ground_damping"); damping && *damping > 0.0)
         model_.add_element("c_" + row.node,
                            "type = \"dashpot\", " + at + ", damping_Nms_per_rad = " + toml_number(*damping));
-      if (r + 1 < rows_.size()) join_next(row, rows_[r + 1]);
-      if (r + 1 == rows_.size() && (row.get("stiffness") || row.get("ratio")))
+      if (r + 1 < rows_.size())
+        join_next(row, rows_[r + 1]);
+      else if (std::any_of(std::begin(kOfShaft), std::end(kOfShaft),
+                           [&](const char* c) { return row.has(c); }))
         model_.not_taken("the shaft behind the last mass, " + row.node);
     }
   }
@@ -192,9 +198,10 @@ class MassElasticReader {
     const std::string nodes = "nodes = " + toml_texts({row.node, next.node}),
                       name = row.node + "_" + next.node;
     const auto stiffness = row.get("stiffness"), ratio = row.get("ratio"), damping = row.get("damping");
-    if (stiffness && ratio)
-      return fault(row.line, "has a stiffness and a ratio; a gear is a line of its own");
-    if (ratio && *ratio != 0.0)
+    for (const char* other : {"stiffness", "damping"})
+      if (row.has("ratio") && row.has(other))
+        return fault(row.line, std::string("has a ") + other + " and a ratio; a gear is a line of its own");
+    if (row.has("ratio"))
       model_.add_element(name, "type = \"ideal_gear\", " + nodes + ", ratio = " + toml_number(*ratio));
     else if (stiffness && *stiffness > 0.0)
       model_.add_element(name, "type = \"shaft_spring\", " + nodes +
@@ -204,8 +211,15 @@ class MassElasticReader {
       model_.add_element(name,
                          "type = \"dashpot\", " + nodes + ", damping_Nms_per_rad = " + toml_number(*damping));
     else
-      return fault(row.line, "has neither stiffness, ratio nor damping to the next mass, " + next.node);
-    if (const auto diameter = row.get("diameter"))
+      return fault(
+          row.line,
+          "has neither a stiffness, a damping nor a ratio other than 0 to the next mass, " + next.node);
+    const auto diameter = row.get("diameter");
+    if (row.has("ratio") && row.has("diameter"))
+      model_.not_taken("the diameter of the gear " + name);
+    else if (!row.has("diameter") && row.has("bore"))
+      model_.not_taken("the bore of " + name + ", which has no diameter");
+    else if (row.has("diameter"))
       model_.add_section(name, "diameter_m = " + toml_number(*diameter) +
                                    (row.get("bore") ? ", bore_m = " + toml_number(*row.get("bore")) : ""));
   }

@@ -181,7 +181,7 @@ class CaseReader {
   void add_motion(const std::string& name, const NodeParams& p, const Part& part) {
     if (p.hold) model_.hold(name);
     if (!std::isnan(p.constant_speed)) model_.constant_speed(name, p.constant_speed);
-    if (p.has_given) model_.given_motion(name, {p.given});
+    if (p.has_given) model_.given_motion(name, {.at = p.given, .frequency = p.given.frequency});
     try {
       if (!std::isnan(p.nominal_speed))
         model_.set_reference(name, constant_speed(p.nominal_speed, p.nominal_angle));

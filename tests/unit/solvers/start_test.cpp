@@ -123,6 +123,50 @@ TEST_CASE("A static start is the equilibrium under the mean of the loads, moving
   CHECK(pulsating.system.initial_deviation()[0] == Approx((7.0 - 0.2 * kMotorSpeed) / 1000.0).epsilon(1e-12));
 }
 
+TEST_CASE("A static start of a run-up takes the speed and the acceleration that it starts with") {
+  // k z = -J dw/dt - c w at t = 0, whatever the ramp does later.
+  for (const double begins : {0.0, 0.5, 5.0}) {
+    Model m("run-up");
+    const NodeId motor = m.add_node("motor"), disc = m.add_node("disc");
+    m.hold(motor);
+    m.set_reference(motor, run_up(rpm(60.0), rpm(120.0), begins, begins + 1.0));
+    m.add<Inertia>("J", {disc}, {.inertia = 1.0});
+    m.add<ShaftSpring>("shaft", {motor, disc}, {.stiffness = 100.0});
+    m.add<Dashpot>("drag", {disc}, {.damping = 0.5});
+    const FoundStart start = find_start(m.build(), Start::static_equilibrium, {.duration = 1.0});
+    const double acceleration = begins > 0.0 ? 0.0 : rpm(60.0);
+    CHECK(start.system.initial_deviation()[0] ==
+          Approx(-(acceleration + 0.5 * rpm(60.0)) / 100.0).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("A given motion has a period, which loads in time may share") {
+  // J z'' + c z' + k z = k u, u = 0.1 cos(w t) at 1.5 Hz, beside a torque of 1 Hz: they repeat after 2 s.
+  constexpr double inertia = 2.0, damping = 3.0, stiffness = 500.0, amplitude = 0.1, torque = 20.0;
+  for (const bool loaded : {false, true}) {
+    Model m("given");
+    const NodeId base = m.add_node("base"), disc = m.add_node("disc");
+    const double w = kTwoPi * 1.5;
+    m.given_motion(base, {.at = [=](double t) -> MotionPoint {
+                            const double c = amplitude * std::cos(w * t);
+                            return {c, -w * amplitude * std::sin(w * t), -w * w * c};
+                          },
+                          .frequency = 1.5});
+    m.add<Inertia>("J", {disc}, {.inertia = inertia});
+    m.add<ShaftSpring>("shaft", {base, disc}, {.stiffness = stiffness});
+    m.add<Dashpot>("c", {disc}, {.damping = damping});
+    if (loaded) m.add<AppliedTorque>("torque", {disc}, {.harmonics = {{1.0, torque, 0.0}}});
+    const FoundStart start = find_start(m.build(), Start::periodic, {.duration = 10.0});
+    CHECK(start.cycle == Approx(loaded ? 2.0 : 1.0 / 1.5).epsilon(1e-9));
+    const auto answer = [&](double force, double v) {
+      return force / std::complex<double>(stiffness - inertia * v * v, damping * v);
+    };
+    const double expected =
+        (answer(stiffness * amplitude, w) + (loaded ? answer(torque, kTwoPi) : 0.0)).real();
+    CHECK(start.system.initial_deviation()[0] == Approx(expected).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("The period of torques in time is the one that their harmonics share") {
   Model m("timed");
   const NodeId disc = m.add_node("disc");

@@ -100,7 +100,8 @@ TEST_CASE("Faults of what is imported are named, all at once", "[import]") {
                            "t.csv:2: stiffness_Nm_per_rad = -3, must be a number >= 0",
                            "the node a is there already, in line 2"})
     CHECK(contains(table, part));
-  CHECK(contains(said("u.csv", "inertia_kg_m2\n1\n2\n"), "has neither stiffness, ratio nor damping"));
+  CHECK(contains(said("u.csv", "inertia_kg_m2\n1\n2\n"),
+                 "has neither a stiffness, a damping nor a ratio other than 0"));
   CHECK(contains(said("w.csv", "inertia_kg_m2,stiffness_MN\n1,2\n2,\n"), "has a unit that it cannot have"));
   CHECK(contains(said("x.csv", "node,inertia_kg_m2,stiffness_Nm_per_rad\na,1,2\nb,,\n"),
                  "x.csv: x/b: inertia = 0 kg m^2"));
@@ -152,6 +153,28 @@ TEST_CASE("Every connection of an openTorsion train is between elements that are
     CHECK(contains(train, part));
 }
 
+TEST_CASE("What a mass-elastic table says that is not taken over is said", "[import]") {
+  const drev::test::TemporaryFolder folder;
+  const auto outcome =
+      [&](const std::string& rows) {
+        std::ofstream(folder / "t.csv")
+            << "inertia_kg_m2,stiffness_Nm_per_rad,damping_Nms_per_rad,ratio,diameter_mm,bore_mm\n" + rows;
+        return drev_command({"import", (folder / "t.csv").string(), "--out", (folder / "t.toml").string()});
+      };
+  CHECK(contains(outcome("1,0,5,2,,\n1,,,,,\n").err, "t.csv:2: has a damping and a ratio"));
+  const auto taken = outcome("1,0,0,2,100,\n1,5,,0,,50\n1,0,7,0,0,0\n2,,,,,\n");
+  CHECK(taken.exit_code == 0);
+  CHECK(contains(taken.out + taken.err, "the diameter of the gear mass_1_mass_2"));
+  CHECK(contains(taken.out + taken.err, "the bore of mass_2_mass_3, which has no diameter"));
+  for (const char* last : {"1,5,,,,\n2,,7,,,\n", "1,5,,,,\n2,,,,90,\n", "1,5,,,,\n2,3,,,,\n"}) {
+    const auto rest = outcome(last);
+    CHECK(contains(rest.out + rest.err, "the shaft behind the last mass, mass_2"));
+  }
+  const auto filled = outcome("1,5,0,0,0,0\n2,0,0,0,0,0\n");
+  CHECK(filled.exit_code == 0);
+  CHECK_FALSE(contains(filled.out + filled.err, "last mass"));
+}
+
 TEST_CASE("Columns of a mass-elastic table that say the same, or are spelt otherwise, are named",
           "[import]") {
   const drev::test::TemporaryFolder folder;
@@ -164,7 +187,7 @@ TEST_CASE("Columns of a mass-elastic table that say the same, or are spelt other
   CHECK(contains(said("inertia_kg_m2,stiffness_Nm_per_rad,stiffness_kNm_per_rad\n1,5,9\n2,,\n"),
                  "t.csv:1: the columns stiffness_Nm_per_rad and stiffness_kNm_per_rad state the same"));
   const std::string capital = said("inertia_kg_m2,Stiffness_Nm_per_rad\n1,5\n2,\n");
-  CHECK(contains(capital, "has neither stiffness, ratio nor damping"));
+  CHECK(contains(capital, "has neither a stiffness, a damping nor a ratio other than 0"));
   CHECK(contains(capital, "the column \"Stiffness_Nm_per_rad\"; did you mean stiffness_Nm_per_rad"));
   CHECK(contains(said("J [kgm2],stiffness_Nm_per_rad\n1,5\n2,\n"),
                  "the column \"J [kgm2]\"; did you mean inertia_kg_m2"));
