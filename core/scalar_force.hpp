@@ -31,6 +31,8 @@ struct ScalarResponse {
 /// Open interval of x in which the two sides do not touch.
 struct Gap {
   double low = 0.0, high = 0.0;
+  /// 1: x is beyond the upper edge, -1: beyond the lower one, 0: in the gap or on an edge.
+  int side(double x) const { return x > high ? 1 : x < low ? -1 : 0; }
 };
 
 /// A known offset e of the deflection and its slope against the nominal angle (transmission error).

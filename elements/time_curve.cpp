@@ -44,15 +44,19 @@ TimeCurve::TimeCurve(Params params) : params_(std::move(params)) {
       const double h = s.to - s.from;
       const Cubic c = hermite(value(s.from, false), value(s.to, s.to == ends[e + 1]), h);
       double error = 0.0;
-      for (const double part : {0.25, 0.5, 0.75})
-        error = std::max(error, std::abs(cubic_at(c, part * h) - value(s.from + part * h, false).value));
+      bool finite = std::isfinite(permitted);
+      for (const double part : {0.25, 0.5, 0.75}) {
+        const double off = std::abs(cubic_at(c, part * h) - value(s.from + part * h, false).value);
+        error = std::max(error, off);
+        finite = finite && std::isfinite(off);
+      }
       if (error > permitted && h > least) {
         const double middle = s.from + 0.5 * h;
         open.push_back({middle, s.to});
         open.push_back({s.from, middle});
         continue;
       }
-      reached_ = reached_ && error <= permitted;  // not NaN either
+      reached_ = reached_ && finite && error <= permitted;
       knots_.push_back(s.from);
       pieces_.push_back(c);
     }

@@ -34,7 +34,7 @@ struct FmuStepWishes {
 };
 struct FmuStepped {
   std::string warning = {};  ///< warning; empty: none
-  bool at_change = false;    ///< true: the step ended early, at a contact change
+  bool at_change = false;    ///< true: the step ended at a contact change
 };
 
 class FmuInstance {

@@ -50,13 +50,16 @@ double FmuInstance::reached(const SpeedInput& input, std::size_t i, double t) co
   return input.at(t, ratio, built_->system.reference()).value;
 }
 
-/// Time of the first contact change after the start of a run and before its end; the state is not changed.
+/// Time of the first contact change after the start of a run and up to its end; the state is not changed. One at the very start
+/// is of the step before.
 std::optional<double> FmuInstance::first_change(const ExactOptions& options) {
   const double near = kSameTime * (options.t_end - options.t_start);
   std::optional<double> first;
   ExactOptions watched = options;
+  watched.t_end += near;
   watched.on_change = [&](const ContactChange& change) {
-    if (!first && change.t > options.t_start + near && change.t < options.t_end - near) first = change.t;
+    if (first || change.t <= options.t_start + near) return;
+    first = change.t < options.t_end - near ? change.t : options.t_end;
   };
   State state = state_.state;
   propagate(built_->system, watched, state);

@@ -150,13 +150,17 @@ std::vector<std::string> undecided_texts(const ClassCase& c) {
   if (!without.empty())
     texts.push_back("No limit is judged " + part_of_speeds(without, answered + without.size()) +
                     ": no motion was found there.");
-  for (const SectionJudgement& j : c.judgement.sections)
+  for (const SectionJudgement& j : c.judgement.sections) {
+    const std::string& name = c.sweep.sections[static_cast<std::size_t>(j.section)].name;
+    if (j.torque_undecided())
+      texts.push_back(name + ": torque not judged at any of the speeds: IACS UR M68.5 has no limit above " +
+                      short_digits(to_rpm(j.rule_ends), 5) + " rpm, 1.05 of the rated speed.");
     if (j.heat_undecided())
-      texts.push_back(c.sweep.sections[static_cast<std::size_t>(j.section)].name + ": permissible heat of " +
-                      digits(j.permissible_heat, 4) + " W not judged " +
+      texts.push_back(name + ": permissible heat of " + digits(j.permissible_heat, 4) + " W not judged " +
                       part_of_speeds(j.heat_unknown, answered) +
                       ": no periodic motion that was found is stable there, and a run in time does not give "
                       "the heat.");
+  }
   return texts;
 }
 

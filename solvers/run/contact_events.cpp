@@ -51,6 +51,9 @@ void ContactEvents::note_side(std::size_t law, int side, double t, double rate) 
 bool ContactEvents::fits(const System& system) const { return system.layout() == system_.layout(); }
 
 void ContactEvents::start(const Assembler& /*assembler*/, const EvaluatedState& point) {
+  for (std::size_t j = 0; j < sides_.size(); ++j)
+    if (const auto gap = system_.scalars()[j].force->gap(); gap && !sides_[j])
+      sides_[j] = gap->side(point.inputs[j].x);
   states_.clear();
   for (const FrictionTerm& term : system_.frictions())
     states_.push_back(point.state.history[term.history_begin + FrictionHistory::kState]);

@@ -54,8 +54,7 @@ static void note_change(int before, int after, double square, double force, doub
 
 void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, double force,
                     double equivalent_mass, ContactInterval& interval, ContactRecord& record) {
-  const auto side = [&gap](double x) { return x > gap.high ? 1 : x < gap.low ? -1 : 0; };
-  const int before = side(a.x), after = side(b.x);
+  const int before = gap.side(a.x), after = gap.side(b.x);
   if (before == after) return;
   // x'^2 is linear in x under a constant acceleration.
   const double part = ((after > 0 ? gap.high : gap.low) - a.x) / (b.x - a.x);
@@ -109,6 +108,7 @@ void ContactStatistics::start(const Assembler& assembler, const EvaluatedState& 
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     records_[i].largest_force = std::abs(point.responses[terms_[i]].y);
     records_[i].largest_force_time = point.state.t;
+    if (!intervals_[i].side) intervals_[i].side = gaps_[i].side(point.inputs[terms_[i]].x);
   }
 }
 

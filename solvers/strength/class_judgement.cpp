@@ -222,8 +222,9 @@ ClassJudgement::Verdict ClassJudgement::verdict() const {
                   [](const auto& s) { return !s.exceeded.empty() || s.heat_exceeds(); }))
     return Verdict::exceeded;
   const bool undecided =
-      !without_motion.empty() || std::any_of(sections.begin(), sections.end(),
-                                             [](const SectionJudgement& s) { return s.heat_undecided(); });
+      !without_motion.empty() || std::any_of(sections.begin(), sections.end(), [](const auto& s) {
+        return s.heat_undecided() || s.torque_undecided();
+      });
   return undecided ? Verdict::undecided : Verdict::within;
 }
 

@@ -89,6 +89,8 @@ struct SectionJudgement {
   bool heat_undecided() const { return heat_limited() && !heat_exceeds() && !heat_unknown.empty(); }
   bool heat_judged() const { return heat_limited() && !heat_undecided(); }
   bool judged() const { return !rule.empty(); }  ///< whether the torque is
+  /// Whether the rule that is to judge the torque has a limit at none of the speeds.
+  bool torque_undecided() const { return !judged() && !std::isnan(rule_ends); }
 };
 
 /// A speed range in which the vibratory force of a mesh exceeds its mean force, so that the teeth hammer.

@@ -74,14 +74,25 @@ void RainflowHistogram::add(const RainflowCycle& cycle) {
   c.count += cycle.count;
   c.sum += cycle.count * cycle.range;
   c.largest = std::max(c.largest, cycle.range);
-  cycles_ += cycle.count;
-  largest_ = std::max(largest_, cycle.range);
+  size_ = std::max(size_, std::abs(cycle.mean) + 0.5 * cycle.range);
 }
 
 std::vector<RainflowHistogram::Class> RainflowHistogram::classes() const {
   std::vector<Class> list;
-  for (const auto& [bin, c] : classes_) list.push_back(c);
+  for (const auto& [bin, c] : classes_)
+    if (c.largest > kRounding * size_) list.push_back(c);
   return list;
+}
+
+double RainflowHistogram::cycles() const {
+  double sum = 0.0;
+  for (const Class& c : classes()) sum += c.count;
+  return sum;
+}
+
+double RainflowHistogram::largest() const {
+  const std::vector<Class> all = classes();
+  return all.empty() ? 0.0 : all.back().largest;
 }
 
 RainflowWatch::RainflowWatch(std::vector<RainflowChannel> channels) : last_(channels.size()) {

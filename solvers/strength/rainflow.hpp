@@ -48,7 +48,8 @@ double miner_sum(std::span<const RainflowCycle> cycles, const SnLine& line);
 /// Damage 1 / N(range) of one cycle [-].
 double damage_of(double range, const SnLine& line);
 
-/// Cycles in classes of their range, in bounded memory: 8 classes per octave.
+/// Cycles in classes of their range, in bounded memory: 8 classes per octave. Classes whose ranges are all below kRounding of
+/// the signal's largest size are rounding, not motion, and are left out.
 class RainflowHistogram {
  public:
   struct Class {
@@ -58,12 +59,14 @@ class RainflowHistogram {
   void add(const RainflowCycle& cycle);
   /// The classes in order of ascending range.
   std::vector<Class> classes() const;
-  double cycles() const { return cycles_; }
-  double largest() const { return largest_; }
+  double cycles() const;
+  /// The largest range; 0: there is no cycle.
+  double largest() const;
+  static constexpr double kRounding = 1e-10;
 
  private:
   std::map<int, Class> classes_;
-  double cycles_ = 0.0, largest_ = 0.0;
+  double size_ = 0.0;  ///< largest |value| of the signal
 };
 
 /// A channel whose cycles are counted in a run, with its factor to the stress of the S-N line.

@@ -107,8 +107,9 @@ DREV_FMI int fmi3DoStep(Instance instance, double t, double h, bool /*no_set_bef
     const FmuStepped stepped = c.fmu->step(t, h, wishes);
     if (event != nullptr) *event = stepped.at_change;
     if (terminate != nullptr) *terminate = false;
-    if (early != nullptr) *early = stepped.at_change;
-    if (last != nullptr) *last = c.fmu->state().state.t;
+    const double ended = c.fmu->state().state.t;
+    if (early != nullptr) *early = ended < t + h;
+    if (last != nullptr) *last = ended;
     return warned(c, stepped.warning);
   });
 }

@@ -57,6 +57,13 @@ TEST_CASE("A formula over time: jumps and kinks at its breakpoints, one that is 
   CHECK(curve.at(0.5)[1] == Approx(0.25));
 }
 
+TEST_CASE("A formula over time that is not finite somewhere is refused") {
+  TimeCurve::Params p{.function = [](const Dual& t) { return 1.0 / t; }, .from = 0.0, .to = 1.0};
+  CHECK(test::contains(curve_findings(p), "not finite"));
+  p.function = [](const Dual& t) { return Dual(t.value < 0.5 ? std::nan("") : 1.0); };
+  CHECK(test::contains(curve_findings(p), "not finite"));
+}
+
 TEST_CASE("A formula over time: bad input is named") {
   TimeCurve::Params p = closing();
   p.to = 0.0;

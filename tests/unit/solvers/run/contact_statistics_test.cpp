@@ -58,6 +58,33 @@ TEST_CASE("Quantiles of a distribution are within half a bin of the value of tha
   CHECK(zeros.quantile(1.0) == Approx(2.0).epsilon(0.022));
 }
 
+TEST_CASE("A contact that begins on its flank counts with every method, one that leaves it does not") {
+  // From the edge x = b: outwards through half a swing, across the gap, half a swing on the other side; or inwards.
+  const double mass = 2.0, k = 5000.0, b = 0.5, v = 1.0, half = kTwoPi / 2.0 / std::sqrt(k / mass);
+  for (const double direction : {1.0, -1.0}) {
+    Model m("from the edge");
+    m.add_node("mass", NodeKind::translational);
+    m.add<Inertia>("J", {"mass"}, {.inertia = mass});
+    m.add<PolylineSpring>("stops", {"mass"}, PolylineSpring::dead_band(k, b));
+    m.set_initial("mass", b, direction * v);
+    const System system = m.build();
+    for (const Method& method :
+         {Method{.name = kExact, .tolerance = 1e-10}, Method{.name = "dormand_prince", .tolerance = 1e-10}}) {
+      INFO(method.name << ", direction " << direction);
+      ContactStatistics contacts(system);
+      ContactEvents events(system);
+      REQUIRE(run_method(system, method, {.t_end = 2.0 * b / v + 1.5 * half}, {&contacts, &events}).ok());
+      const ContactRecord& r = contacts.records()[0];
+      CHECK(r.front_impacts == (direction > 0.0 ? 1 : 0));
+      CHECK(r.back_impacts == 1);
+      CHECK(r.front_speed.largest() == Approx(direction > 0.0 ? v : 0.0).margin(1e-6));
+      CHECK(events.all().size() == (direction > 0.0 ? 3u : 2u));
+      CHECK(events.all()[0].made);
+      CHECK(events.all()[0].t == Approx(direction > 0.0 ? 0.0 : 2.0 * b / v).margin(1e-6));
+    }
+  }
+}
+
 TEST_CASE("A mass thrown to and fro between two stops meets each at its speed") {
   // v in the gap of 2 b, half a swing in each stop: period 2 pi/w + 4 b/v, largest force v sqrt(k m).
   const double mass = 2.0, k = 5000.0, b = 0.01, v = 0.7;

@@ -139,6 +139,20 @@ TEST_CASE("Chatter: where the vibratory force of a mesh exceeds its mean", "[str
   CHECK(found.accepted());
 }
 
+TEST_CASE("A section is not within a rule that has no limit at any of the speeds", "[strength]") {
+  using Verdict = ClassJudgement::Verdict;
+  const LinearSweep sweep = triangle();
+  Strength strength;
+  strength.sections = {shaft_of(0.34)};
+  strength.sections[0].tensile_strength = 600e6, strength.sections[0].shape_factor = 0.6;
+  strength.rated_speed = 0.5 * sweep.speeds.front();
+  const ClassJudgement beyond = judge_sweep(sweep, strength);
+  CHECK(beyond.sections[0].torque_undecided());
+  CHECK(beyond.verdict() == Verdict::undecided);
+  strength.sections[0].permissible_torque = 1e9;  // which holds where the rule does not
+  CHECK(judge_sweep(sweep, strength).verdict() == Verdict::within);
+}
+
 TEST_CASE("A limit of heat that is known at some speeds only is kept by no train, and may be exceeded",
           "[strength]") {
   using Verdict = ClassJudgement::Verdict;

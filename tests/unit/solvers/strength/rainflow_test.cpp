@@ -114,3 +114,21 @@ TEST_CASE("Load cycles of a run are found on the motion, whatever the steps", "[
     CHECK(counted == Approx(20.25 * range).epsilon(1e-7));
   }
 }
+
+TEST_CASE("A motion that has come to rest under a load has no more load cycles", "[strength]") {
+  Model m("settling");
+  m.add_node("ground");
+  m.add_node("disc");
+  m.hold("ground");
+  m.add<Inertia>("J", {"disc"}, {.inertia = 1.0});
+  constexpr double k = 1000.0, ratio = 0.1, torque = 100.0;
+  m.add<ShaftSpring>("shaft", {"ground", "disc"}, {.stiffness = k, .damping = 2.0 * ratio * std::sqrt(k)});
+  m.add<AppliedTorque>("load", {"disc"}, {.table = TimeTable({0.0}, {torque})});
+  const System system = m.build();
+  RainflowWatch watch({{find_channel(system, "shaft.torque_Nm")}});
+  REQUIRE(run_method(system, Method{.name = "exact", .tolerance = 1e-10}, {.t_end = 40.0}, {&watch}).ok());
+  // Each half swing is a part q of the one before; they end where one is 1e-10 of the largest torque.
+  const double q = std::exp(-3.14159265358979 * ratio / std::sqrt(1.0 - ratio * ratio));
+  const double half_swings = std::log(1e-10) / std::log(q);
+  CHECK(watch.finish()[0].histogram.cycles() == Approx(0.5 * half_swings).margin(2.0));
+}
