@@ -13,6 +13,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/names/rounded_text.hpp"
+
 namespace drev {
 
 namespace {
@@ -22,14 +24,21 @@ constexpr double kMostMultiple = 1000;   // largest frequency over the shared on
 constexpr int kTimesOfCycle = 97;        // times of a cycle at which loads are compared
 constexpr double kSameLoad = 1e-8;       // relative
 constexpr double kMostCycles = 1e5;      // cycles of a run that settles
+constexpr int kMostRuns = 3;             // runs, one after the other, in which it is to settle
+constexpr double kInstant = 1e-9;        // s, in which a run-up from rest is still at rest
 
-/// The largest frequency that divides all frequencies of loads and given motions [Hz]; 0: there is none, or it is too low.
-double shared_frequency(const System& system) {
+/// Of loads and given motions [Hz].
+std::vector<double> frequencies_of(const System& system) {
   std::vector<double> frequencies;
   for (const LoadTerm& term : system.loads())
     for (const double frequency : term.load->frequencies()) frequencies.push_back(frequency);
   for (const Motion& motion : system.prescribed())
     if (motion.frequency > 0.0) frequencies.push_back(motion.frequency);
+  return frequencies;
+}
+
+/// The largest frequency that divides all of these [Hz]; 0: there is none, or it is too low.
+double shared_frequency(const std::vector<double>& frequencies) {
   double shared = 0.0, highest = 0.0;
   for (const double frequency : frequencies) {
     highest = std::max(highest, frequency);
@@ -59,19 +68,25 @@ double constant_speed_of(const System& system, double duration) {
   return std::abs(speed);
 }
 
-/// Cycles to try [s].
-std::vector<double> cycles_of(const System& system, const StartOptions& options) {
-  const double speed = constant_speed_of(system, options.duration);
-  std::vector<double> cycles;
-  if (options.cycle > 0.0) cycles.push_back(options.cycle);
+/// Cycles to try, at this speed of the reference shaft [rad/s; 0: none turns]: of turns, of what acts in time, and of both [s].
+std::vector<double> cycles_of(const System& system, double speed) {
+  std::vector<double> cycles, turns;
   if (speed > 0.0)
-    for (const double turns : {1.0, 2.0, 4.0, cycle_turns(system)})
-      if (turns > 0.0) cycles.push_back(turns * kTwoPi / speed);
-  if (const double frequency = shared_frequency(system); frequency > 0.0) cycles.push_back(1.0 / frequency);
+    for (const double n : {1.0, 2.0, 4.0, cycle_turns(system)})
+      if (n > 0.0) turns.push_back(n * kTwoPi / speed);
+  cycles = turns;
+  std::vector<double> frequencies = frequencies_of(system);
+  if (const double shared = shared_frequency(frequencies); shared > 0.0) cycles.push_back(1.0 / shared);
+  if (frequencies.empty()) return cycles;
+  for (const double turn : turns) {
+    frequencies.push_back(1.0 / turn);
+    if (const double shared = shared_frequency(frequencies); shared > 0.0) cycles.push_back(1.0 / shared);
+    frequencies.pop_back();
+  }
   return cycles;
 }
 
-/// Whether all that acts where nothing deviates repeats after the cycle.
+/// Whether all that acts where nothing deviates repeats after the cycle, at the speed of the start.
 bool repeats(const System& system, double cycle) {
   Assembler assembler(system);
   const Vector zero = Vector::Zero(system.size());
@@ -79,9 +94,9 @@ bool repeats(const System& system, double cycle) {
   double largest = 0.0, change = 0.0;
   for (int i = 0; i < kTimesOfCycle; ++i) {
     const double t = cycle * (i + 0.5) / kTimesOfCycle;
-    assembler.set_time(t);
+    assembler.set_time_ahead(0.0, t);
     assembler.external(zero, zero, now);
-    assembler.set_time(t + cycle);
+    assembler.set_time_ahead(0.0, t + cycle);
     assembler.external(zero, zero, later);
     largest = std::max(largest, now.cwiseAbs().maxCoeff());
     change = std::max(change, (later - now).cwiseAbs().maxCoeff());
@@ -89,14 +104,12 @@ bool repeats(const System& system, double cycle) {
   return change <= kSameLoad * largest;
 }
 
-/// The first cycle in which all that acts repeats, at the speed of the start [s]; where none is, two turns of the reference shaft,
+/// The first cycle in which all that acts repeats, at the speed of the start [s]; where none is, one turn of the reference shaft,
 /// or what the loads and given motions share; 0: there is none.
 double mean_cycle_of(const System& system) {
-  std::vector<double> cycles;
-  if (const auto& reference = system.reference(); reference && reference->at)
-    if (const double speed = std::abs(reference->at(0.0).rate); speed > 0.0)
-      for (const double turns : {2.0, 1.0, 4.0}) cycles.push_back(turns * kTwoPi / speed);
-  if (const double frequency = shared_frequency(system); frequency > 0.0) cycles.push_back(1.0 / frequency);
+  const auto& reference = system.reference();
+  const std::vector<double> cycles =
+      cycles_of(system, reference && reference->at ? std::abs(reference->at(0.0).rate) : 0.0);
   for (const double cycle : cycles)
     if (repeats(system, cycle)) return cycle;
   return cycles.empty() ? 0.0 : cycles.front();
@@ -104,10 +117,14 @@ double mean_cycle_of(const System& system) {
 
 FoundStart start_static(const System& system, const StartOptions& options) {
   const double cycle = options.cycle > 0.0 ? options.cycle : mean_cycle_of(system);
-  const StaticResult found = solve_static(system, {.mean_over = cycle});
+  const auto& reference = system.reference();
+  const bool leaves_rest =
+      cycle == 0.0 && reference && reference->at && reference->at(0.0).acceleration != 0.0;
+  const StaticResult found = solve_static(system, {.mean_over = leaves_rest ? kInstant : cycle});
   return {system.with_initial(found.state.z, found.state.v),
           "in static equilibrium under " +
-              (cycle > 0.0 ? "the mean of the loads over " + to_text(cycle) + " s" : "the loads at t = 0"),
+              (cycle > 0.0 ? "the mean of the loads over " + rounded_text(cycle, 6) + " s"
+                           : "the loads at t = 0"),
           cycle};
 }
 
@@ -126,22 +143,29 @@ FoundStart settle(const System& system, double cycle, const std::string& why, co
   StartOptions first = options;
   first.cycle = cycle;
   const FoundStart begin = start_static(system, first);
-  State before = State::initial(begin.system);
-  const MethodRunOptions until{.t_end = (cycles - 1.0) * cycle, .progress = options.progress};
-  RunSummary run = run_method(system, options.method, until, before);
-  State after = before;
-  if (run.ok())
-    run = run_method(system, options.method,
-                     {.t_start = until.t_end, .t_end = cycles * cycle, .progress = options.progress}, after);
-  if (!run.ok()) throw SolverError(none + "; nor does a run settle on one: " + run.reason);
-  const double error = std::max(change_of(before.z, after.z), change_of(before.v, after.v));
+  State before = State::initial(begin.system), after = before;
+  double made = 0.0, error = 0.0;
+  const auto run_to = [&](double cycle_number, State& state) {
+    const RunSummary run = run_method(
+        system, options.method,
+        {.t_start = made * cycle, .t_end = cycle_number * cycle, .progress = options.progress}, state);
+    made = cycle_number;
+    if (!run.ok()) throw SolverError(none + "; nor does a run settle on one: " + run.reason);
+  };
+  for (int i = 0; i < kMostRuns && (i == 0 || error > kSettledPart); ++i) {
+    before = after;
+    run_to(made + cycles - 1.0, before);
+    after = before;
+    run_to(made + 1.0, after);
+    error = std::max(change_of(before.z, after.z), change_of(before.v, after.v));
+  }
   std::ostringstream how;
   how.precision(6);
   if (error <= kSettledPart)
-    how << "in the motion on which a run of " << cycles << " cycles of " << cycle
+    how << "in the motion on which a run of " << made << " cycles of " << cycle
         << " s settled (it changes by ";
   else
-    how << "at the end of a run of " << cycles << " cycles of " << cycle
+    how << "at the end of a run of " << made << " cycles of " << cycle
         << " s, which did not settle on a periodic motion (it changes by ";
   how.precision(2);
   how << 100.0 * error << " % from cycle to cycle; " << why << ")";
@@ -164,7 +188,8 @@ Growth growth_beside(const System& system, double speed) {
 }
 
 FoundStart start_periodic(const System& system, const StartOptions& options) {
-  std::vector<double> cycles = cycles_of(system, options);
+  std::vector<double> cycles = cycles_of(system, constant_speed_of(system, options.duration));
+  if (options.cycle > 0.0) cycles.insert(cycles.begin(), options.cycle);
   std::string reason =
       cycles.empty()
           ? "no reference shaft turns, and no frequencies of loads and given motions share a period"

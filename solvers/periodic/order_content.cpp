@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "core/dense/fourier.hpp"
+#include "core/names/rounded_text.hpp"
 
 namespace drev {
 
@@ -19,15 +20,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kWholeLine = 1e-9;
-constexpr double kSettled = 1e-9;  // error relative to the largest amplitude (or slope) [-]
-constexpr double kSame = 1e-12;    // difference over the largest torque up to which loads are equal [-]
-constexpr double kNoLine = 1e-13;  // amplitude relative to the rms that is rounding of the transform [-]
-constexpr int kProbes = 24;        // number of angles at which dependence on time, speed and turns is tested
-// Widest panel of the quadrature [rad of the node], and largest phase of the highest order over a panel
-// [rad].
-constexpr double kWidestPanel = 0.35, kPanelPhase = 2.5;
-constexpr int kFewestSamples = 256, kMostSamples = 1 << 16;
+constexpr double kSame = 1e-12;  // difference over the largest torque up to which loads are equal [-]
+constexpr int kProbes = 24;      // number of angles at which dependence on time, speed and turns is tested
+constexpr int kFewestSamples = 256;
 
 LoadResponse at_angle(const LoadTerm& term, double angle, double speed, double t = 0.0,
                       double deviation = 0.0) {
@@ -38,10 +33,21 @@ LoadResponse at_angle(const LoadTerm& term, double angle, double speed, double t
 /// Angles that no division of a turn into equal parts hits [rad].
 double probe_angle(int i) { return 0.37 + 0.911 * i; }
 
+bool repeats_after(const SpeedScaledLoad& load, int curve, double angle) {
+  double size = 0.0, off = 0.0;
+  for (int i = 0; i < kProbes; ++i) {
+    const double value = load.curve(curve, probe_angle(i));
+    size = std::max(size, std::abs(value));
+    off = std::max(off, std::abs(load.curve(curve, probe_angle(i) + angle) - value));
+  }
+  return off <= kSame * size;
+}
+
 }  // namespace
 
 OrderContent::OrderContent(const System& system, std::vector<double> orders, std::vector<Finding>& findings)
     : system_(system), orders_(std::move(orders)) {
+  const double some_speed = system.reference_speed() != 0.0 ? system.reference_speed() : 1.0;
   for (const LoadTerm& term : system.loads()) {
     if (system.node_map(term.node).prescribed >= 0) continue;  // the reaction carries it
     Source source;
@@ -49,9 +55,9 @@ OrderContent::OrderContent(const System& system, std::vector<double> orders, std
       source = *relative;
       source.scaled = dynamic_cast<const SpeedScaledLoad*>(term.load);
       source.relative = static_cast<int>(relative - sources_.data());
-    } else if (!inspect(term, source, findings))
+    } else if (!inspect(term, some_speed, source, findings))
       continue;
-    follows_speed_ = follows_speed_ || source.follows_speed;
+    follows_speed_ = follows_speed_ || source.called;
     loads_.push_back(&term);
     sources_.push_back(source);
   }
@@ -69,14 +75,14 @@ const OrderContent::Source* OrderContent::family_source(const LoadTerm& term) co
   return nullptr;
 }
 
-bool OrderContent::inspect(const LoadTerm& term, Source& source, std::vector<Finding>& findings) const {
+bool OrderContent::inspect(const LoadTerm& term, double at_speed, Source& source,
+                           std::vector<Finding>& findings) const {
   const std::string place = system_.name() + "/" + system_.element_instances()[idx(index(term.element))].name;
   const auto refuse = [&](const std::string& why) {
     findings.push_back({place, "", "", "", why});
     return false;
   };
-  const double some_speed = system_.reference_speed() > 0.0 ? system_.reference_speed() : 1.0;
-  const double ratio = system_.ratio(term.node), speed = ratio * some_speed;
+  const double ratio = system_.ratio(term.node), speed = ratio * at_speed;
   const std::string does_not_turn = "follows the angle of " + system_.node_names()[idx(term.node)] +
                                     ", which does not turn with the reference shaft";
   if (const auto* harmonics = dynamic_cast<const HarmonicLoad*>(term.load)) {
@@ -104,28 +110,55 @@ bool OrderContent::inspect(const LoadTerm& term, Source& source, std::vector<Fin
     return refuse(
         "is a function of the time and has no orders; a sweep takes loads that follow the angle, such as "
         "engine_order_torque and cam_torque, and constant ones");
-  for (const double factor : {0.5, 1.7, 3.1})
-    source.follows_speed = source.follows_speed ||
-                           (scaled ? scaled->speed_factors(factor * speed) != scaled->speed_factors(speed)
-                                   : !same([&](double a) { return at_angle(term, a, factor * speed); }));
-  const bool standing = same([&](double) { return at_angle(term, 0.0, speed); });
-  source.constant = ratio == 0.0 || standing;
-  if (ratio == 0.0 && !standing) return refuse(does_not_turn);
   source.table = term.load->table().has_value();
+  source.called = !scaled && !source.table && term.load->depends_on_motion();
+  const bool standing = same([&](double) { return at_angle(term, 0.0, speed); });
+  // The curves of a load that is scaled by the speed count, whatever is left of them at this one.
+  source.constant = ratio == 0.0 || (standing && !scaled);
+  if (ratio == 0.0 && !standing) return refuse(does_not_turn);
   if (!source.constant && !source.table) {
-    bool repeats = false;
-    for (const int turns : {1, 2, 3, 4, 5, 6, 8, 10, 12, 15, kMostTurns}) {
-      repeats = same([&](double a) { return at_angle(term, a + turns * kTwoPi, speed); });
-      // Rounding of the angle changes a steep load by more than the rounding of its torque.
-      if (!repeats) continue;
-      source.turns = turns;
-      break;
-    }
-    if (!repeats)
+    const std::size_t curves = scaled ? scaled->speed_factors(speed).size() : 0;
+    const auto repeats = [&](double angle) {
+      for (std::size_t k = 0; k < curves; ++k)
+        if (!repeats_after(*scaled, static_cast<int>(k), angle)) return false;
+      return scaled || same([&](double a) { return at_angle(term, a + angle, speed); });
+    };
+    const std::array turns{1, 2, 3, 4, 5, 6, 8, 10, 12, 15, kMostTurns};
+    const auto* found = std::find_if(turns.begin(), turns.end(), [&](int n) { return repeats(n * kTwoPi); });
+    // Rounding of the angle changes a steep load by more than the rounding of its torque.
+    if (found == turns.end())
       return refuse("does not repeat within " + std::to_string(kMostTurns) + " turns of its node");
+    source.turns = *found;
   }
   constexpr double kTurned = 0.3;  // rad
   source.by_angle = same([&](double a) { return at_angle(term, a - kTurned, speed, 0.0, kTurned); });
+  return true;
+}
+
+/// Whether the load is another than at the speed for which its content is known. Of one that is called, this finds its properties
+/// at the speed anew.
+bool OrderContent::changes(std::size_t load, double speed, std::vector<Finding>& findings) {
+  Source& source = sources_[load];
+  const LoadTerm& term = *loads_[load];
+  if (source.scaled) {
+    if (source.relative >= 0) return !source.known || sources_[idx(source.relative)].changed;
+    std::vector<double> factors = source.scaled->speed_factors(system_.ratio(term.node) * speed);
+    const bool changes = factors != source.factors;
+    source.factors = std::move(factors);
+    return changes;
+  }
+  if (!source.called) return !source.known;
+  std::vector<double> probes;
+  for (int i = 0; i < kProbes; ++i) {
+    const LoadResponse r = at_angle(term, probe_angle(i), system_.ratio(term.node) * speed, 0.173 * i);
+    probes.insert(probes.end(), {r.torque, r.dtorque_dangle, r.dtorque_dspeed});
+  }
+  if (probes == source.probes) return false;
+  Source here;
+  if (!inspect(term, speed, here, findings)) return false;
+  if (here.turns == source.turns) here.samples = source.samples;
+  here.probes = std::move(probes);
+  source = std::move(here);
   return true;
 }
 
@@ -258,6 +291,7 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
     if (source.by_angle || std::abs(content.angle_slope) <= kSettled * steepest) content.angle_slope = 0.0;
     for (const double value : torque) square += (value - content.mean) * (value - content.mean) / samples;
     content.rms = std::sqrt(square);
+    if (std::abs(content.mean) <= kNoLine * content.rms) content.mean = 0.0;
     transform.forward(lines, torque);
     lines.resize(static_cast<std::size_t>(samples) / 2);  // without the Nyquist line
     for (Complex& line : lines) line *= 2.0 / samples;
@@ -277,181 +311,15 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
   return content;
 }
 
-/// Finds the curves of a load whose torque is a sum of curves scaled by the speed: from another load of its
-/// family by rotation, by integration between their knots, or from samples.
-void OrderContent::find_curves(std::size_t load, double speed) {
-  Source& source = sources_[load];
-  if (!source.curves.empty()) return;
-  const LoadTerm& term = *loads_[load];
-  const auto& scaled = dynamic_cast<const SpeedScaledLoad&>(*term.load);
-  const double ratio = system_.ratio(term.node);
-  if (source.relative >= 0 && sources_[idx(source.relative)].curves.empty()) source.relative = -1;
-  if (source.relative >= 0) {
-    const Source& relative = sources_[idx(source.relative)];
-    const double behind = scaled.family().start - relative.scaled->family().start;
-    source.curves = relative.curves;
-    for (std::size_t k = 0; k < orders_.size(); ++k) {
-      const Complex turned = std::polar(1.0, -orders_[k] / ratio * behind);
-      for (Content& curve : source.curves) curve.amplitudes[k] *= turned;
-    }
-    return;
-  }
-  const auto count = static_cast<Eigen::Index>(scaled.speed_factors(ratio * speed).size());
-  if (!integrate_curves(term, source, ratio * speed, count)) sample_curves(term, source, count);
-}
-
-bool OrderContent::integrate_curves(const LoadTerm& term, Source& source, double speed,
-                                    Eigen::Index count) const {
-  const auto* knotted = dynamic_cast<const KnottedLoad*>(term.load);
-  const auto& load = dynamic_cast<const SpeedScaledLoad&>(*term.load);
-  if (!knotted) return false;
-  const double ratio = system_.ratio(term.node), period = source.turns * kTwoPi;
-  const double highest = orders_.empty() ? 0.0 : orders_.back() / std::abs(ratio);
-  const double widest = std::min(kWidestPanel, kPanelPhase / std::max(highest, kPanelPhase));
-  // Only waves with a whole number of periods: a load that repeats contains no others.
-  std::vector<std::pair<std::size_t, double>> waves;  // number of the order, order of the node's angle
-  for (std::size_t k = 0; k < orders_.size(); ++k) {
-    const double order = orders_[k] / std::abs(ratio), line = std::round(order * source.turns);
-    if (line >= 1.0 && std::abs(order * source.turns - line) <= kWholeLine * line)
-      waves.emplace_back(k, line / source.turns);
-  }
-  Vector means = Vector::Zero(count), values(count);
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count, count);
-  Eigen::MatrixXcd sums = Eigen::MatrixXcd::Zero(count, static_cast<Eigen::Index>(waves.size()));
-  const auto point = [&](double angle, double weight) {
-    for (Eigen::Index k = 0; k < count; ++k) values[k] = load.curve(static_cast<int>(k), angle);
-    means += weight * values;
-    products.noalias() += weight * values * values.transpose();
-    double before = 0.0, spacing = 0.0;
-    Complex wave = 1.0, step = 1.0;
-    for (std::size_t i = 0; i < waves.size(); ++i) {
-      if (waves[i].second - before != spacing) {
-        spacing = waves[i].second - before;
-        step = std::polar(1.0, -spacing * angle);
-      }
-      wave = {wave.real() * step.real() - wave.imag() * step.imag(),
-              wave.real() * step.imag() + wave.imag() * step.real()};
-      before = waves[i].second;
-      for (Eigen::Index k = 0; k < count; ++k)
-        sums(k, static_cast<Eigen::Index>(i)) += weight * values[k] * wave;
-    }
-  };
-  constexpr double kAhead = 1e-9;  // step past a knot that was found [rad]
-  for (double at = 0.0; at < period * (1.0 - kWholeLine);) {
-    const double knot = std::max(knotted->piece(at, 1.0, speed).high, at + kAhead);
-    const double next = knot < period * (1.0 - kWholeLine) ? knot : period;
-    const int panels = static_cast<int>(std::ceil((next - at) / widest));
-    const double half = 0.5 * (next - at) / panels;
-    for (int p = 0; p < panels; ++p)
-      for (std::size_t g = 0; g < kGaussPoints.size(); ++g)
-        for (const double side : {-1.0, 1.0})
-          point(at + half * (2 * p + 1 + side * kGaussPoints[g]), half * kGaussWeights[g] / period);
-    at = next;
-  }
-  for (Eigen::Index k = 0; k < count; ++k) {
-    Content content;
-    content.mean = means[k];
-    content.amplitudes.assign(orders_.size(), 0.0);
-    content.rms = std::sqrt(std::max(0.0, products(k, k) - means[k] * means[k]));
-    for (std::size_t i = 0; i < waves.size(); ++i) {
-      const Complex c = 2.0 * sums(k, static_cast<Eigen::Index>(i));
-      if (std::abs(c) > kNoLine * content.rms)
-        content.amplitudes[waves[i].first] = ratio > 0.0 ? c : std::conj(c);
-    }
-    source.curves.push_back(std::move(content));
-  }
-  source.products = products - means * means.transpose();
-  return true;
-}
-
-void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::Index count) const {
-  const auto& load = dynamic_cast<const SpeedScaledLoad&>(*term.load);
-  const double ratio = system_.ratio(term.node), spacing = std::abs(ratio) / source.turns;
-  FourierTransform transform;
-  Eigen::MatrixXd values;
-  const auto curves_with = [&](int samples) {
-    std::vector<Content> curves;
-    std::vector<Complex> lines;
-    std::vector<double> column(static_cast<std::size_t>(samples));
-    const Eigen::MatrixXd half = std::move(values);  // every second new sample, except the first time
-    values.resize(samples, count);
-    for (Eigen::Index k = 0; k < count; ++k)
-      for (int i = 0; i < samples; ++i)
-        values(i, k) = half.size() > 0 && i % 2 == 0
-                           ? half(i / 2, k)
-                           : load.curve(static_cast<int>(k), source.turns * kTwoPi * i / samples);
-    const Eigen::RowVectorXd means = values.colwise().mean();
-    const Eigen::MatrixXd vary = values.rowwise() - means;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      Content content;
-      content.mean = means[k];
-      content.rms = std::sqrt(vary.col(k).squaredNorm() / samples);
-      std::copy_n(vary.col(k).data(), samples, column.begin());
-      transform.forward(lines, column);
-      lines.resize(static_cast<std::size_t>(samples) / 2);
-      for (Complex& line : lines) line *= 2.0 / samples;
-      pick(lines, spacing, ratio > 0.0, content);
-      curves.push_back(std::move(content));
-    }
-    source.products = vary.transpose() * vary / samples;
-    return curves;
-  };
-  int samples = fewest_samples(spacing);
-  source.curves = curves_with(samples);
-  while (samples < kMostSamples) {
-    samples *= 2;
-    const std::vector<Content> coarse = std::move(source.curves);
-    source.curves = curves_with(samples);
-    bool settled = true;
-    for (std::size_t k = 0; k < coarse.size(); ++k)
-      settled = settled && difference(coarse[k], source.curves[k]) <= kSettled;
-    if (settled) break;
-  }
-}
-
-/// The content of the load at a speed: the sum of its scaled curves. Loads of a family differ in phase only.
-void OrderContent::sum_curves(std::size_t load, double speed) {
-  Source& source = sources_[load];
-  Content& sum = content_[load];
-  const LoadTerm& term = *loads_[load];
-  const bool first = source.relative < 0;
-  if (first) source.factors = source.scaled->speed_factors(system_.ratio(term.node) * speed);
-  const std::vector<double>& factors = first ? source.factors : sources_[idx(source.relative)].factors;
-  sum.node = term.node;
-  sum.amplitudes.resize(orders_.size());
-  const auto orders = static_cast<Eigen::Index>(orders_.size());
-  Eigen::Map<Eigen::VectorXcd> amplitudes(sum.amplitudes.data(), orders);
-  for (std::size_t k = 0; k < factors.size(); ++k) {
-    const Eigen::Map<const Eigen::VectorXcd> part(source.curves[k].amplitudes.data(), orders);
-    if (k == 0)
-      amplitudes = factors[k] * part;
-    else
-      amplitudes += factors[k] * part;
-  }
-  if (!first) {
-    const Content& same = content_[idx(source.relative)];
-    sum.mean = same.mean, sum.rms = same.rms, sum.left_out = same.left_out;
-    return;
-  }
-  sum.mean = 0.0;
-  double square = 0.0;
-  for (std::size_t k = 0; k < factors.size(); ++k) {
-    sum.mean += factors[k] * source.curves[k].mean;
-    for (std::size_t j = 0; j < factors.size(); ++j)
-      square += factors[k] * factors[j] *
-                source.products(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j));
-  }
-  sum.rms = std::sqrt(std::max(0.0, square));
-  sum.left_out = std::sqrt(std::max(0.0, sum.rms * sum.rms - 0.5 * amplitudes.squaredNorm()));
-  if (sum.left_out < 1e-7 * sum.rms) sum.left_out = 0.0;
-}
-
 const std::vector<OrderContent::Content>& OrderContent::at(double speed) {
   if (speed == speed_) return content_;
-  speed_ = speed;
+  speed_ = 0.0;
+  std::vector<Finding> findings;
   for (std::size_t l = 0; l < loads_.size(); ++l) {
     Source& source = sources_[l];
-    if (source.known) continue;
+    source.changed = changes(l, speed, findings);
+    if (!source.changed || !findings.empty()) continue;
+    source.known = true;
     const LoadTerm& term = *loads_[l];
     const bool no_slope = source.by_angle || !term.load->depends_on_motion();
     if (source.constant) {
@@ -465,12 +333,17 @@ const std::vector<OrderContent::Content>& OrderContent::at(double speed) {
       content_[l] = of_table(term);
     } else if (no_slope && source.scaled) {
       find_curves(l, speed);
-      sum_curves(l, speed);
+      sum_curves(l);
     } else {
       content_[l] = of_samples(term, source, speed);
     }
-    source.known = !source.follows_speed;
   }
+  if (!findings.empty()) {
+    for (Finding& finding : findings)
+      finding.place += ", at " + rounded_text(to_rpm(std::abs(speed)), 9) + " rpm";
+    throw ModelError(std::move(findings));
+  }
+  speed_ = speed;
   return content_;
 }
 

@@ -8,7 +8,8 @@
 /// are piecewise linear: c_o = -(2 / (P o^2)) sum of the changes of slope times exp(-i o phi) at the knots).
 /// Harmonics are used as they are given. Curves with known knots are integrated between them
 /// (Gauss-Legendre). Other loads are sampled at N equidistant angles, with N doubled until the content has
-/// converged. A load that does not depend on the speed is evaluated once.
+/// converged. A load that does not depend on the speed is evaluated once; of one that is called, what it depends on is found anew
+/// at each speed at which it gives other torques: a gate may open there.
 ///
 /// The class also gives the means of the load's slopes dp/dtheta and dp/dtheta', by which the load acts as a
 /// spring and a damper. The variation of the slopes over the cycle is left out (tables: their mean slope is
@@ -42,18 +43,28 @@ class OrderContent {
 
   /// orders: > 0, ascending. Loads that are refused are added to findings.
   OrderContent(const System& system, std::vector<double> orders, std::vector<Finding>& findings);
-  /// The content of each load on an unknown. speed: signed speed of the reference shaft [rad/s].
+  /// The content of each load on an unknown. speed: signed speed of the reference shaft [rad/s]. Throws ModelError where a load
+  /// depends on the time, or does not repeat, at this speed only.
   const std::vector<Content>& at(double speed);
   /// damping -= mean dp/dtheta', stiffness -= mean dp/dtheta of all loads at the speed, as values on the
   /// pattern; null if not wanted.
   void add_slopes(double speed, Vector* damping, Vector* stiffness);
   const std::vector<const LoadTerm*>& loads() const { return loads_; }
+  /// Whether the slopes of a load may differ between speeds.
   bool follows_speed() const { return follows_speed_; }
 
  private:
+  static constexpr double kWholeLine = 1e-9;
+  static constexpr double kSettled = 1e-9;  // error relative to the largest amplitude (or slope) [-]
+  static constexpr double kNoLine =
+      1e-13;  // amplitude relative to the rms that is rounding of the transform [-]
+  static constexpr int kMostSamples = 1 << 16;
   struct Source {
     double turns = 1.0;  // turns of its node in which the load repeats
-    bool constant = false, follows_speed = false, known = false;
+    bool constant = false, known = false;
+    bool changed = false;        // by the speed last asked for
+    bool called = false;         // true: its torque and slopes may follow the speed in any way
+    std::vector<double> probes;  // torques and slopes of a load that is called, at the speed of its content
     bool harmonics = false, table = false;  // true: the load gives its harmonics, or its table
     const SpeedScaledLoad* scaled = nullptr;
     int relative = -1;            // number of the first load of its family, if that is another one
@@ -66,8 +77,10 @@ class OrderContent {
   };
   /// The source of the first load of the same family on a node of the same ratio; null: none.
   const Source* family_source(const LoadTerm& term) const;
-  /// Finds the properties of a load from its place and by evaluating it; false: refused, with findings.
-  bool inspect(const LoadTerm& term, Source& source, std::vector<Finding>& findings) const;
+  /// Finds the properties of a load from its place and by evaluating it at a speed of the reference shaft; false: refused, with
+  /// findings.
+  bool inspect(const LoadTerm& term, double at_speed, Source& source, std::vector<Finding>& findings) const;
+  bool changes(std::size_t load, double speed, std::vector<Finding>& findings);
   Content of_table(const LoadTerm& term) const;
   Content of_harmonics(const LoadTerm& term) const;
   Content of_samples(const LoadTerm& term, Source& source, double speed) const;
@@ -79,7 +92,7 @@ class OrderContent {
   /// Largest difference of mean and amplitudes, relative to the largest of them in `fine` [-].
   static double difference(const Content& coarse, const Content& fine);
   void sample_curves(const LoadTerm& term, Source& source, Eigen::Index count) const;
-  void sum_curves(std::size_t load, double speed);
+  void sum_curves(std::size_t load);
   void pick(const std::vector<std::complex<double>>& lines, double spacing, bool forward,
             Content& content) const;
 

@@ -140,6 +140,38 @@ TEST_CASE("A static start of a run-up takes the speed and the acceleration that 
   }
 }
 
+TEST_CASE("A static start of a run-up from rest takes the acceleration that it starts with") {
+  Model m("run-up from rest");
+  const NodeId motor = m.add_node("motor"), disc = m.add_node("disc");
+  m.hold(motor);
+  m.set_reference(motor, run_up(0.0, 100.0, 0.0, 1.0));
+  m.add<Inertia>("J", {disc}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {motor, disc}, {.stiffness = 1000.0});
+  const FoundStart start = find_start(m.build(), Start::static_equilibrium, {.duration = 1.0});
+  CHECK(start.system.initial_deviation()[0] == Approx(-0.1).epsilon(1e-10));  // -J alpha / k
+}
+
+TEST_CASE("A cycle is one of turns and times together, of gears that turn slower too") {
+  // 10 Hz of the reference and 4 Hz in time repeat after 0.5 s; 0.3 turns of a gear after 1/3 s. Their means are 0.
+  for (const bool in_time : {true, false}) {
+    Model m("cycles");
+    const NodeId motor = m.add_node("motor"), disc = m.add_node("disc"), slow = m.add_node("slow");
+    m.constant_speed(motor, rpm(600.0));
+    m.add<IdealGear>("gear", {motor, slow}, {.ratio = 0.3});
+    m.add<ShaftSpring>("shaft", {in_time ? motor : slow, disc}, {.stiffness = 1000.0, .damping = 1.0});
+    m.add<Inertia>("J", {disc}, {.inertia = 0.01});
+    m.add<Inertia>("J_slow", {slow}, {.inertia = 0.01});
+    m.add<EngineOrderTorque>("order", {disc}, {.harmonics = {{1.0, 10.0, 0.0}}, .twist_feedback = false});
+    if (in_time) m.add<AppliedTorque>("time", {disc}, {.harmonics = {{4.0, 20.0, 0.0}}});
+    const System system = m.build();
+    const FoundStart found = find_start(system, Start::static_equilibrium, {.duration = 1.0});
+    CAPTURE(in_time, found.how);
+    CHECK(found.cycle == Approx(in_time ? 0.5 : 1.0 / 3.0).epsilon(1e-9));
+    CHECK(found.system.initial_deviation().cwiseAbs().maxCoeff() < 1e-9);
+    CHECK(find_start(system, Start::periodic, {.duration = 1.0}).cycle == Approx(found.cycle).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("A given motion has a period, which loads in time may share") {
   // J z'' + c z' + k z = k u, u = 0.1 cos(w t) at 1.5 Hz, beside a torque of 1 Hz: they repeat after 2 s.
   constexpr double inertia = 2.0, damping = 3.0, stiffness = 500.0, amplitude = 0.1, torque = 20.0;

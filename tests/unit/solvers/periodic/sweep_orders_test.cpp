@@ -1,6 +1,6 @@
 // Orders that a sweep solves side by side, in sets of lanes, against the same orders one by one, which are solved by
 // the elimination with pivoting. Covers solvers/periodic/linear_response.hpp, lane_sections.hpp and
-// solvers/linear/lane_elimination.hpp through sweep_linear().
+// solvers/linear/lane_elimination.hpp through sweep_linear(); and loads that only some of the speeds have (order_content.hpp).
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
@@ -123,5 +123,52 @@ TEST_CASE("Sums of orders have the same extremes alone and beside others", "[lin
       CHECK((e.max >= most - 1e-13 && e.max <= most + 1e-2));
       CHECK((e.min <= least + 1e-13 && e.min >= least - 1e-2));
     }
+  }
+}
+
+namespace {
+
+/// J = 1 kg m^2 on a shaft of 1000 N m/rad and 0.1 N m s/rad behind a clock, with a torque between these speeds of its disc.
+LinearSweep gated(double nominal_rpm, std::vector<double> speeds,
+                  std::function<Dual(const TorqueVariables&)> torque, double from_rpm) {
+  Model m("gated");
+  m.add_node("clock");
+  m.add_node("disc");
+  m.constant_speed("clock", rpm(nominal_rpm));
+  m.add<Inertia>("J", {"disc"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {"clock", "disc"}, {.stiffness = 1000.0, .damping = 0.1});
+  m.add<TorqueFunction>(
+      "load", {"disc"},
+      {.torque = std::move(torque),
+       .gate = {.from_speed = rpm(from_rpm), .to_speed = rpm(5000.0), .speed_ramp = rpm(100.0)}});
+  return sweep_linear(m.build(), {.speeds = std::move(speeds), .orders = {2.0}, .refine = false});
+}
+
+}  // namespace
+
+TEST_CASE("What a load depends on is found at the speeds of the sweep, whatever the nominal speed is",
+          "[linear_sweep]") {
+  const std::vector<double> speeds{rpm(300.0), rpm(1400.0), rpm(2500.0)};
+  for (const double nominal : {600.0, 1200.0}) {
+    CAPTURE(nominal);
+    const LinearSweep wave = gated(
+        nominal, speeds, [](const TorqueVariables& x) { return 100.0 * cos(2.0 * x.angle); }, 900.0);
+    CHECK(wave.sections[0].half_range()[0] == 0.0);
+    CHECK(wave.sections[0].mean.isZero(0.0));
+    for (const Eigen::Index i : {1, 2}) {
+      const double w = 2.0 * speeds[static_cast<std::size_t>(i)];
+      const std::complex<double> shaft(1000.0, 0.1 * w);
+      CHECK(wave.sections[0].half_range()[i] ==
+            Approx(100.0 * std::abs(shaft / (shaft - w * w))).epsilon(1e-9));
+    }
+    const LinearSweep constant = gated(
+        nominal, speeds, [](const TorqueVariables&) { return Dual(-100.0); }, 2000.0);
+    CHECK(constant.sections[0].mean[0] == 0.0);
+    CHECK(constant.sections[0].mean[1] == 0.0);
+    CHECK(std::abs(constant.sections[0].mean[2]) == Approx(100.0).epsilon(1e-12));
+    CHECK_THROWS_AS(
+        gated(
+            nominal, speeds, [](const TorqueVariables& x) { return Dual(std::sin(50.0 * x.t)); }, 900.0),
+        ModelError);
   }
 }
