@@ -66,7 +66,7 @@ class RitzProjector {
       findings.push_back({full_.name(), "basis",
                           std::to_string(basis_.rows()) + " x " + std::to_string(basis_.cols()), "",
                           "must have a row for each of the " + std::to_string(full_.size()) +
-                              " unknowns and no more columns"});
+                              " unknowns, and at least one column but no more than rows"});
     else if (!basis_.allFinite())
       findings.push_back({full_.name(), "basis", "not finite", "", "must be finite"});
     if (const auto why =

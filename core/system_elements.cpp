@@ -7,6 +7,7 @@
 
 #include "core/contradictions.hpp"
 #include "core/element_parts.hpp"
+#include "core/names/article.hpp"
 #include "core/system_builder.hpp"
 
 namespace drev {
@@ -64,7 +65,7 @@ void SystemBuilder::describe_elements() {
     const bool count_fits = given >= low && given <= high;
     if (!count_fits)
       findings_.push_back({place(p.name), "nodes", std::to_string(given), "",
-                           "a " + std::string(p.element->type()) + " takes " + std::to_string(low) +
+                           with_article(p.element->type()) + " takes " + std::to_string(low) +
                                (high > low ? " or " + std::to_string(high) : std::string())});
     const std::size_t before = findings_.size();
     ParameterCheck check(place(p.name), findings_);
@@ -341,7 +342,7 @@ bool SystemBuilder::check_kinds(const ElementInstance& p, const std::vector<int>
     findings_.push_back({place(p.name), "node", node_name(node), "",
                          std::string("is ") + (turns ? "translational" : "rotational") + " and " +
                              node_name(nodes.front()) + " is " + (turns ? "rotational" : "translational") +
-                             "; a " + std::string(p.element->type()) + " joins nodes of one kind"});
+                             "; " + with_article(p.element->type()) + " joins nodes of one kind"});
     return false;
   }
   return true;

@@ -3,6 +3,8 @@
 #include <drev/core/law/friction.hpp>
 #include <drev/core/system.hpp>
 
+#include "core/names/article.hpp"
+
 namespace drev {
 
 const char* to_text(FrictionState state) {
@@ -26,7 +28,7 @@ int tie_of(const System& system, int loss) {
 std::optional<std::string> why_not_friction(const System& system, const std::string& what) {
   if (system.frictions().empty()) return std::nullopt;
   const ElementInstance& first = system.element_instances()[idx(index(system.frictions().front().element))];
-  return first.name + " is a " + std::string(first.element->type()) + ", which sticks and slips: " + what +
+  return first.name + " is " + with_article(first.element->type()) + ", which sticks and slips: " + what +
          " does not take dry friction; take exact propagation (method = \"exact\")";
 }
 

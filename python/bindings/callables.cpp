@@ -172,7 +172,6 @@ class PythonLaw final : public Element, public ScalarForce {
             .stored_energy = f.has_energy() ? f.energy(in.x) : 0.0,
             .dissipated_power = (y.force - at_rest) * in.x_dot};
   }
-  bool varies() const override { return true; }
 
  private:
   int number_;

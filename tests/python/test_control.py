@@ -172,6 +172,12 @@ def test_a_law_in_python_keeps_its_energy():
     assert abs(stepped["a.angle_rad"][-1] - short["a.angle_rad"][-1]) < 1e-6
 
 
+def test_an_energy_that_is_not_that_of_the_law_is_noticed():
+    with pytest.warns(drev.NotTrustedWarning):
+        run = cubic(torque=lambda x, rate, t: (1e3 * x, 1e3, 0.0), energy=lambda x: 50 * x**2).run(duration_s=0.3)
+    assert run.status == "energy_error"
+
+
 def test_loads_in_python():
     m = drev.Model("loads")
     m.add_nodes("time", "motion")

@@ -130,7 +130,7 @@ TEST_CASE("Nodes of elements") {
   }
   SECTION("too many") {
     m.add<Inertia>("bad", {"motor", "pump"}, {.inertia = 1.0});
-    CHECK(only_fault(m, {"pump_set/bad", "nodes = 2", "takes 1"}));
+    CHECK(only_fault(m, {"pump_set/bad", "nodes = 2", "an inertia takes 1"}));
   }
   SECTION("too many for one or two") {
     m.add_node("third");
