@@ -169,6 +169,28 @@ RevolvedContour revolved_contour(const std::vector<RevolvedStation>& stations, d
           ContourBuilder(std::move(bore), -1.0, lean).edges};
 }
 
+std::vector<SharpEdge> sharp_edges(const std::vector<RevolvedStation>& stations) {
+  // Stress grows as distance^-(turn/pi): by about a hundredth over three decades.
+  constexpr double kSmooth = 5e-3;
+  const std::vector<ContourEdge> edges = revolved_contour(stations, 1.0).surface;
+  std::vector<SharpEdge> found(stations.size(), SharpEdge::none);
+  for (std::size_t v = 0; v <= edges.size(); ++v) {
+    const ContourEdge &before = edges[v == 0 ? 0 : v - 1], &behind = edges[std::min(v, edges.size() - 1)];
+    // An end that turns as a whole is a mirror: a cylinder goes on straight there.
+    constexpr PlanePoint kCylinder{0.0, -1.0};
+    const PlanePoint a = v == 0 ? kCylinder : inward_normal(before, 1.0),
+                     b = v == edges.size() ? kCylinder : inward_normal(behind, 0.0);
+    if (std::atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]) < kSmooth) continue;
+    const SharpEdge kind = before.face || behind.face ? SharpEdge::shoulder : SharpEdge::corner;
+    for (const ContourEdge* edge : {&before, &behind})
+      if (!edge->face) {
+        SharpEdge& of_station = found[static_cast<std::size_t>(edge->station)];
+        of_station = std::max(of_station, kind);
+      }
+  }
+  return found;
+}
+
 RevolvedMesher::RevolvedMesher(const std::vector<RevolvedStation>& stations, double lean, bool bent)
     : contour_(revolved_contour(stations, lean)) {
   double z = 0.0;

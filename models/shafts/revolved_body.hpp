@@ -45,6 +45,12 @@ struct RevolvedContour {
 /// lean: how far marks run ahead, 0 to 1.
 RevolvedContour revolved_contour(const std::vector<RevolvedStation>& stations, double lean);
 
+/// Where the surface of a station turns outwards without a round, elastic stress has no limit. corner: towards another slope,
+/// or away from an end, which turns as a whole; shoulder: at the face of a step.
+enum class SharpEdge { none, corner, shoulder };
+/// Of each station.
+std::vector<SharpEdge> sharp_edges(const std::vector<RevolvedStation>& stations);
+
 /// Columns of cells as a grid: cell column * rows + row, rows from the surface (0) to the bore, u = -1 on the surface.
 struct RevolvedMesh {
   QuadraticMesh mesh;

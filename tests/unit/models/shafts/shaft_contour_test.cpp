@@ -107,6 +107,30 @@ TEST_CASE("A contour that is drawn from its other end has the same segments", "[
   }
 }
 
+TEST_CASE("Stress has no limit where a taper turns outwards", "[shafts]") {
+  const auto places = [](std::vector<ShaftStation> stations) {
+    std::vector<std::string> found;
+    for (const ShaftSection& s : shaft_sections(plain_shaft(std::move(stations))).sections) {
+      CHECK(std::isinf(s.stress_factor.value) == s.stress_place.starts_with("sharp"));
+      found.push_back(s.stress_place);
+    }
+    return found;
+  };
+  using Places = std::vector<std::string>;
+  CHECK(places({{.length = 0.2, .outer_diameter = 0.15, .end_diameter = 0.1},
+                {.length = 0.1, .outer_diameter = 0.1},
+                {.length = 0.1, .outer_diameter = 0.12}}) ==
+        Places{"sharp corner", "sharp shoulder", "surface"});
+  // Held ends turn as a whole, as a thicker part would; a corner that turns inwards is relieved.
+  CHECK(places({{.length = 0.1, .outer_diameter = 0.1, .end_diameter = 0.2}}) == Places{"sharp corner"});
+  CHECK(places({{.length = 0.1, .outer_diameter = 0.2},
+                {.length = 0.1, .outer_diameter = 0.2, .end_diameter = 0.1992}}) ==
+        Places{"surface", "surface"});
+  // A groove beside it does not hide a shoulder.
+  CHECK(places({{.length = 0.3, .outer_diameter = 0.1, .groove = ShaftGroove{0.1, 0.01, 0.01}},
+                {.length = 0.1, .outer_diameter = 0.12}}) == Places{"sharp shoulder", "surface"});
+}
+
 TEST_CASE("Cams and hubs lie between bounds, and cams far from their own section's stiffness", "[shafts]") {
   const ShaftStation journal{
       .length = 0.06, .outer_diameter = 0.05, .fillet_start = 0.002, .fillet_end = 0.002};
