@@ -100,15 +100,18 @@ std::vector<std::string> System::floating_parts(Contact contact) const {
   return names;
 }
 
-std::optional<std::string> System::why_not_varying_inertia(const std::string& method) const {
+std::optional<std::string> System::why_not_varying_inertia(const std::string& method, bool steps) const {
   for (const LoadTerm& term : loads_) {
     const auto* inertia = dynamic_cast<const VaryingInertia*>(term.load);
     if (inertia != nullptr && inertia->inertia_varies())
       return element_instances()[idx(index(term.element))].name +
              " has an inertia that follows the angle (varying_inertia), which " + method +
-             " does not take; run it in steps, not reduced and with planets on elastic meshes (gear_mesh) "
-             "where it "
-             "has any, or with its mean inertia (varying_inertia = false)";
+             " does not take; " +
+             (steps ? "run it in steps, not reduced and with planets on elastic meshes (gear_mesh) where it "
+                      "has "
+                      "any, or with "
+                    : "take ") +
+             "its mean inertia (varying_inertia = false)";
   }
   return std::nullopt;
 }

@@ -218,8 +218,8 @@ class System {
   /// Inertias that follow an angle.
   const std::vector<VaryingInertiaRow>& varying_inertias() const { return varying_inertias_; }
   /// Why `method`, of which that is said, does not take the system's varying inertia: names an element of it; none if
-  /// there is no such inertia.
-  std::optional<std::string> why_not_varying_inertia(const std::string& method) const;
+  /// there is no such inertia. steps: a method of steps can be taken in its place, and is advised.
+  std::optional<std::string> why_not_varying_inertia(const std::string& method, bool steps = true) const;
   const std::vector<FrequencyTerm>& frequency_terms() const { return frequency_terms_; }
   const std::vector<GeneralTerm>& generals() const { return generals_; }
   const std::vector<FrictionTerm>& frictions() const { return frictions_; }

@@ -20,8 +20,9 @@ struct FmuInstance::Built {
         original(model_case.model.build()),
         system(with_inputs(model_case.model, nodes(interface)).build()),
         assembler(system) {
-    if (const auto why = why_not_exact(system))
-      throw ModelError({{system.name(), "", "", "", "cannot be an FMU: " + *why}});
+    if (const auto why = why_not_exact(system, false))
+      throw ModelError({{system.name(), "", "", "",
+                         "cannot be an FMU, which is propagated exactly whatever its method: " + *why}});
     refuse_controllers(system, "an FMU");
     outputs = find_signals(system, interface.outputs);
     assembler.set_time(0.0);

@@ -40,7 +40,7 @@ std::string column_hint(const std::string& cell) {
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
   const std::string name = lower.substr(0, lower.find_first_of(" [(/_"));
-  std::vector<std::string> names;
+  std::vector<std::string> names{"node", "name"};
   for (const MassElasticColumn& column : kColumns) names.emplace_back(column.name);
   std::string nearest = name.size() > 3 ? nearest_name(name, names) : "";
   for (const auto& [symbol, meaning] : kSymbols)
@@ -49,7 +49,7 @@ std::string column_hint(const std::string& cell) {
     if (lower.starts_with(column.name)) nearest = column.name;
   for (const MassElasticColumn& column : kColumns)
     if (column.name == nearest) return "; did you mean " + spellings(column.name, column.dimension) + "?";
-  return {};
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
 }
 
 class MassElasticReader {

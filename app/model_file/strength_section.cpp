@@ -42,9 +42,9 @@ std::string take_from_contour(const Model& model, const std::string& name, Secti
       if (std::isnan(section.diameter)) section.diameter = station.diameter, section.bore = station.bore;
       if (section.stress_concentration != 1.0) return {};
       if (std::isinf(station.stress_factor.value))
-        return "station " + station.name +
-               " has a sharp shoulder, at which stress has no limit: give it a fillet, or the section a "
-               "stress_concentration";
+        return "station " + station.name + " has a " + station.stress_place +
+               ", at which stress has no limit: give the section a stress_concentration" +
+               (station.stress_place == "sharp shoulder" ? ", or the shoulder a fillet" : "");
       section.stress_concentration = std::max(1.0, station.stress_factor.value);
       return {};
     }

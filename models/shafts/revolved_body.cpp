@@ -169,8 +169,29 @@ RevolvedContour revolved_contour(const std::vector<RevolvedStation>& stations, d
           ContourBuilder(std::move(bore), -1.0, lean).edges};
 }
 
-RevolvedMesher::RevolvedMesher(const std::vector<RevolvedStation>& stations,
-                               const std::vector<double>& planes, double lean, bool bent)
+std::vector<SharpEdge> sharp_edges(const std::vector<RevolvedStation>& stations) {
+  // Stress grows as distance^-(turn/pi): by about a hundredth over three decades.
+  constexpr double kSmooth = 5e-3;
+  const std::vector<ContourEdge> edges = revolved_contour(stations, 1.0).surface;
+  std::vector<SharpEdge> found(stations.size(), SharpEdge::none);
+  for (std::size_t v = 0; v <= edges.size(); ++v) {
+    const ContourEdge &before = edges[v == 0 ? 0 : v - 1], &behind = edges[std::min(v, edges.size() - 1)];
+    // An end that turns as a whole is a mirror: a cylinder goes on straight there.
+    constexpr PlanePoint kCylinder{0.0, -1.0};
+    const PlanePoint a = v == 0 ? kCylinder : inward_normal(before, 1.0),
+                     b = v == edges.size() ? kCylinder : inward_normal(behind, 0.0);
+    if (std::atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]) < kSmooth) continue;
+    const SharpEdge kind = before.face || behind.face ? SharpEdge::shoulder : SharpEdge::corner;
+    for (const ContourEdge* edge : {&before, &behind})
+      if (!edge->face) {
+        SharpEdge& of_station = found[static_cast<std::size_t>(edge->station)];
+        of_station = std::max(of_station, kind);
+      }
+  }
+  return found;
+}
+
+RevolvedMesher::RevolvedMesher(const std::vector<RevolvedStation>& stations, double lean, bool bent)
     : contour_(revolved_contour(stations, lean)) {
   double z = 0.0;
   for (std::size_t k = 0; bent && k <= stations.size(); ++k) {
@@ -184,7 +205,7 @@ RevolvedMesher::RevolvedMesher(const std::vector<RevolvedStation>& stations,
     if (k < stations.size()) z += right.length;
   }
   corners(stations);
-  divide(stations, planes);
+  divide(stations);
 }
 
 void RevolvedMesher::corners(const std::vector<RevolvedStation>& stations) {
@@ -223,55 +244,33 @@ void RevolvedMesher::corners(const std::vector<RevolvedStation>& stations) {
   layers_ = graded_division(1.0, {.first = first, .last = 0.2, .growth = 0.3, .largest = 0.2});
 }
 
-/// Cuts of an edge: corners, corners of the bore, and the planes, behind which another span begins.
-void RevolvedMesher::divide(const std::vector<RevolvedStation>& stations, const std::vector<double>& planes) {
+/// Cuts of an edge: its corners and those of the bore.
+void RevolvedMesher::divide(const std::vector<RevolvedStation>& stations) {
   struct Cut {
     double at, size;
-    bool plane;
   };
-  std::size_t next_plane = 0;
-  int span = 0;
   for (std::size_t e = 0; e < contour_.surface.size(); ++e) {
     const ContourEdge& edge = contour_.surface[e];
     if (edge.round_cells > 0) {
       for (int i = 0; i < edge.round_cells; ++i)
-        cells_.push_back({e, double(i) / edge.round_cells, (i + 1.0) / edge.round_cells, span});
+        cells_.push_back({e, double(i) / edge.round_cells, (i + 1.0) / edge.round_cells});
       continue;
     }
     const RevolvedStation& s = stations[static_cast<std::size_t>(edge.station)];
-    std::vector<Cut> cuts;
+    std::vector<Cut> cuts{{0.0, corner_size_[e]}};
     for (std::size_t b = 1; b < contour_.bore.size(); ++b) {
       const double t = (contour_.bore[b].mark_from - edge.mark_from) / (edge.mark_to - edge.mark_from);
-      if (t > 1e-6 && t < 1.0 - 1e-6) cuts.push_back({t, 0.08 * (std::min(s.left, s.right) - s.bore), false});
-    }
-    const double z0 = edge.at(0.0)[0], z1 = edge.at(1.0)[0];
-    // A leaning column divides the shaft as the plane does at the mean of its r^3: a fifth of its way in.
-    constexpr double kMean = 0.2;
-    const double from = z0 + kMean * (edge.mark_from - z0), to = z1 + kMean * (edge.mark_to - z1);
-    // Planes inside fillets are moved onto the next plateau, so that no span is empty.
-    std::size_t taken = next_plane;
-    while (z1 > z0 && taken < planes.size() && (planes[taken] - from) / (to - from) < 1.0 - 1e-6) ++taken;
-    const double apart = 0.01 / double(taken - next_plane + 1);
-    for (std::size_t first = next_plane; next_plane < taken; ++next_plane) {
-      const double t = (planes[next_plane] - from) / (to - from);
-      if (next_plane == first && t <= apart)
-        ++span;
-      else
-        cuts.push_back(
-            {std::clamp(t, apart * double(next_plane - first + 1), 1.0 - apart * double(taken - next_plane)),
-             0.5 * edge.length, true});
+      if (t > 1e-6 && t < 1.0 - 1e-6) cuts.push_back({t, 0.08 * (std::min(s.left, s.right) - s.bore)});
     }
     std::sort(cuts.begin(), cuts.end(), [](const Cut& a, const Cut& b) { return a.at < b.at; });
-    cuts.insert(cuts.begin(), {0.0, corner_size_[e], false});
-    cuts.push_back({1.0, corner_size_[e + 1], false});
+    cuts.push_back({1.0, corner_size_[e + 1]});
     for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
-      if (cuts[c].plane) ++span;
       const double part = cuts[c + 1].at - cuts[c].at, length = edge.length * part;
       if (part < 1e-7) continue;
       const std::vector<double> ends = graded_division(
           length, {.first = cuts[c].size, .last = cuts[c + 1].size, .growth = 0.4, .largest = 0.5 * length});
       for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-        cells_.push_back({e, cuts[c].at + part * ends[i], cuts[c].at + part * ends[i + 1], span});
+        cells_.push_back({e, cuts[c].at + part * ends[i], cuts[c].at + part * ends[i + 1]});
     }
   }
 }
@@ -325,9 +324,10 @@ RevolvedMesh RevolvedMesher::mesh(int halvings) const {
     const double part = 0.5 * j / finer - double(k), t = cell.from + part * (cell.to - cell.from);
     const double mark = edge.mark_from + t * (edge.mark_to - edge.mark_from);
     const PlanePoint p = edge.at(t), end = foot(mark), f = middle_.empty() ? end : bend(mark);
+    constexpr double kMean = 0.2;
+    made.place.push_back(p[0] + kMean * (mark - p[0]));
     rays.push_back({p, f, end, share(cell, t, std::hypot(f[0] - p[0], f[1] - p[1]))});
-    if (j % 2 == 0 && j < 2 * made.columns)
-      made.station.push_back(edge.face ? -1 : edge.station), made.span.push_back(cell.span);
+    if (j % 2 == 0 && j < 2 * made.columns) made.station.push_back(edge.face ? -1 : edge.station);
   }
   add_block(made.mesh, made.rows, made.columns, [&](double s, double t) {
     const Ray& ray = rays[static_cast<std::size_t>(std::lround(2.0 * made.columns * t))];

@@ -45,18 +45,26 @@ struct RevolvedContour {
 /// lean: how far marks run ahead, 0 to 1.
 RevolvedContour revolved_contour(const std::vector<RevolvedStation>& stations, double lean);
 
+/// Where the surface of a station turns outwards without a round, elastic stress has no limit. corner: towards another slope,
+/// or away from an end, which turns as a whole; shoulder: at the face of a step.
+enum class SharpEdge { none, corner, shoulder };
+/// Of each station.
+std::vector<SharpEdge> sharp_edges(const std::vector<RevolvedStation>& stations);
+
 /// Columns of cells as a grid: cell column * rows + row, rows from the surface (0) to the bore, u = -1 on the surface.
 struct RevolvedMesh {
   QuadraticMesh mesh;
   int columns = 0, rows = 0;
   std::vector<int> station;  ///< of each column's edge of the surface; -1: the face of a step
-  std::vector<int> span;     ///< between which planes each column is, from 0
+  /// Where columns begin and end, and their middles, so that column c is from 2 c to 2 c + 2: z where they are a fifth of
+  /// the way to their marks. A leaning column divides the shaft as the plane does at this mean of its r^3, and what a neck
+  /// twists inside a thicker part is the neck's.
+  std::vector<double> place;
 };
 class RevolvedMesher {
  public:
-  /// planes: ascending z between the ends at which columns are to end. bent: columns go by way of a line in the material.
-  RevolvedMesher(const std::vector<RevolvedStation>& stations, const std::vector<double>& planes,
-                 double lean = 1.0, bool bent = false);
+  /// bent: columns go by way of a line in the material.
+  explicit RevolvedMesher(const std::vector<RevolvedStation>& stations, double lean = 1.0, bool bent = false);
   /// halvings: every cell of the first mesh is cut into 2^halvings by 2^halvings.
   RevolvedMesh mesh(int halvings) const;
   /// Nodes of it.
@@ -66,10 +74,9 @@ class RevolvedMesher {
   struct Cell {
     std::size_t edge;
     double from, to;
-    int span;
   };
   void corners(const std::vector<RevolvedStation>& stations);
-  void divide(const std::vector<RevolvedStation>& stations, const std::vector<double>& planes);
+  void divide(const std::vector<RevolvedStation>& stations);
   PlanePoint foot(double mark) const;
   PlanePoint bend(double mark) const;
   int rows() const;

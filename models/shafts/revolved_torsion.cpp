@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "solvers/fields/scalar_field.hpp"
 
@@ -36,8 +37,29 @@ class SectionFactor {
   bool plain_ = true;
 };
 
+/// Where along v of a column of cells a plane divides it.
+double division(const RevolvedMesh& grid, std::size_t column, double plane) {
+  const double* place = &grid.place[2 * column];
+  const int half = plane > place[1] ? 1 : 0;
+  return half - 1.0 + (plane - place[half]) / (place[half + 1] - place[half]);
+}
+
+/// The integral of a function of points over a cell from v = from to v = to.
+template <class Function>
+double integral(const QuadraticMesh& mesh, int cell, double from, double to, const Function& f) {
+  static const double place = std::sqrt(0.6);
+  static const double at[] = {-place, 0.0, place}, weight[] = {5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
+  const double half = 0.5 * (to - from);
+  double sum = 0.0;
+  for (int k = 0; k < 9; ++k) {
+    const CellPoint point = cell_point(mesh, cell, at[k % 3], from + half * (1.0 + at[k / 3]));
+    sum += weight[k % 3] * weight[k / 3] * half * point.jacobian * f(point);
+  }
+  return sum;
+}
+
 RevolvedResult solve_once(const std::vector<RevolvedStation>& stations, const RevolvedMesh& grid,
-                          std::size_t spans) {
+                          const std::vector<double>& planes) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const QuadraticMesh& mesh = grid.mesh;
   const auto width = static_cast<std::size_t>(2 * grid.rows + 1);
@@ -55,17 +77,32 @@ RevolvedResult solve_once(const std::vector<RevolvedStation>& stations, const Re
   RevolvedResult found;
   found.unknowns = unknowns.count;
   found.flexibility = theta.back() / kTurn;
-  found.spans.assign(spans, 0.0);
+  found.spans.assign(planes.size() + 1, 0.0);
   found.peak.assign(stations.size(), 0.0);
   found.peak_at.assign(stations.size(), 0.0);
   for (int column = 0; column < grid.columns; ++column) {
     const auto c = static_cast<std::size_t>(column);
-    for (int row = 0; row < grid.rows; ++row)
-      for (const CellPoint& point : gauss_points(mesh, column * grid.rows + row)) {
-        const PlanePoint g = field_gradient(mesh, column * grid.rows + row, point, theta);
-        found.spans[static_cast<std::size_t>(grid.span[c])] +=
-            point.weight * conductivity(point.position) * (g[0] * g[0] + g[1] * g[1]) / kTurn;
-      }
+    const auto first = std::upper_bound(planes.begin(), planes.end(), grid.place[2 * c]);
+    const auto span = static_cast<std::size_t>(first - planes.begin());
+    std::vector<double> ends{-1.0};  // of the spans in this column
+    for (auto plane = first; plane != planes.end() && *plane < grid.place[2 * c + 2]; ++plane)
+      ends.push_back(division(grid, c, *plane));
+    ends.push_back(1.0);
+    for (int row = 0; row < grid.rows; ++row) {
+      const int cell = column * grid.rows + row;
+      const auto energy = [&](double from, double to) {
+        return integral(mesh, cell, from, to, [&](const CellPoint& point) {
+          const PlanePoint g = field_gradient(mesh, cell, point, theta);
+          return conductivity(point.position) * (g[0] * g[0] + g[1] * g[1]) / kTurn;
+        });
+      };
+      std::vector<double> parts;
+      for (std::size_t k = 0; k + 1 < ends.size(); ++k) parts.push_back(energy(ends[k], ends[k + 1]));
+      // Rules over parts are not quite the rule over the cell, whose sum is the work of the torque.
+      const double scale =
+          parts.size() == 1 ? 1.0 : energy(-1.0, 1.0) / std::accumulate(parts.begin(), parts.end(), 0.0);
+      for (std::size_t k = 0; k < parts.size(); ++k) found.spans[span + k] += scale * parts[k];
+    }
     if (grid.station[c] < 0) continue;
     const auto station = static_cast<std::size_t>(grid.station[c]);
     for (const double v : {-1.0, 0.0, 1.0}) {
@@ -86,9 +123,7 @@ namespace {
 
 RevolvedTorsion refine(const std::vector<RevolvedStation>& stations, const std::vector<double>& planes,
                        const RevolvedOptions& options, const RevolvedMesher& mesher) {
-  const auto solve = [&](int halvings) {
-    return solve_once(stations, mesher.mesh(halvings), planes.size() + 1);
-  };
+  const auto solve = [&](int halvings) { return solve_once(stations, mesher.mesh(halvings), planes); };
   RevolvedResult coarse = solve(0);
   double change_before = 0.0;
   for (int halvings = 1;; ++halvings) {
@@ -134,7 +169,7 @@ RevolvedTorsion solve_revolved(const std::vector<RevolvedStation>& stations,
   for (double lean = 1.0;; lean *= 0.4)
     for (const bool bent : {stepped, !stepped}) {
       try {
-        return refine(stations, planes, options, RevolvedMesher(stations, planes, lean, bent));
+        return refine(stations, planes, options, RevolvedMesher(stations, lean, bent));
       } catch (const SolverError&) {
         if (bent != stepped && lean < kLeast) throw;
       }

@@ -77,7 +77,8 @@ struct ShaftSection {
   double inertia = 0.0;  ///< about the axis [kg m^2]
   double naive_flexibility = 0.0;  ///< length/J [1/m^3]
   double flexibility = 0.0;        ///< G theta/T of its share in the whole [1/m^3]
-  /// Largest over nominal shear stress, T/polar_section_modulus(diameter, bore); infinite at a sharp shoulder.
+  /// Largest over nominal shear stress, T/polar_section_modulus(diameter, bore); infinite at a sharp shoulder, and at
+  /// the corner of a taper.
   Estimate stress_factor;
   std::string stress_place;  ///< "fillet", "groove", "keyway", ...
 };

@@ -34,13 +34,6 @@ double piece_flexibility(const RevolvedStation& p) {
   return sum * p.length / (3.0 * kSteps);
 }
 
-bool sharp_step(const std::vector<RevolvedStation>& pieces, std::size_t k) {
-  const RevolvedStation& p = pieces[k];
-  constexpr double kEven = 1.0 + 1e-9;
-  return (k > 0 && pieces[k - 1].right > kEven * p.left && p.round_left == 0.0) ||
-         (k + 1 < pieces.size() && pieces[k + 1].left > kEven * p.right && p.round_right == 0.0);
-}
-
 /// Polar moment integrated between two planes by Simpson's rule, to which kinks at fillets matter little.
 double polar_volume(const ContourParts& parts, double from, double to) {
   constexpr int kSteps = 400;
@@ -55,14 +48,15 @@ double polar_volume(const ContourParts& parts, double from, double to) {
 
 /// Stress of a station over its nominal one: the body of revolution, or the section's own peak.
 void find_stress(ShaftSection& section, const ShaftStation& station, const StationSection& plane,
-                 std::size_t k, const ContourParts& parts, const RevolvedTorsion& whole) {
+                 std::size_t k, const ContourParts& parts, const RevolvedTorsion& whole,
+                 const std::vector<SharpEdge>& edges) {
   const double modulus = ring_modulus(0.5 * section.diameter, 0.5 * section.bore);
-  bool sharp = false;
+  SharpEdge sharp = SharpEdge::none;
   section.stress_factor = {1.0, 0.0, Estimate::Kind::estimate};
   section.stress_place = "surface";
   for (std::size_t p = 0; p < parts.pieces().size(); ++p) {
     if (parts.station()[p] != static_cast<int>(k)) continue;
-    sharp = sharp || (sharp_step(parts.pieces(), p) && !station.groove);
+    sharp = std::max(sharp, edges[p]);
     const double factor = whole.peak[p].value * modulus;
     if (factor <= section.stress_factor.value) continue;
     section.stress_factor = {factor, whole.peak[p].error * modulus, Estimate::Kind::estimate};
@@ -79,9 +73,9 @@ void find_stress(ShaftSection& section, const ShaftStation& station, const Stati
       section.stress_place = station.cam ? "cam" : station.spline ? "spline" : "keyway";
     }
   }
-  if (sharp) {
+  if (sharp != SharpEdge::none) {
     section.stress_factor = {HUGE_VAL, 0.0, Estimate::Kind::estimate};
-    section.stress_place = "sharp shoulder";
+    section.stress_place = sharp == SharpEdge::shoulder ? "sharp shoulder" : "sharp corner";
   }
 }
 
@@ -141,11 +135,12 @@ ShaftSections shaft_sections(const ShaftContour& contour) {
     z += contour.stations[k].length;
   }
   found.planes.push_back(z);
+  const std::vector<SharpEdge> edges = sharp_edges(parts.pieces());
   RevolvedOptions options{.accuracy = contour.accuracy};
   for (std::size_t p = 0; p < parts.pieces().size(); ++p) {
     const RevolvedStation& piece = parts.pieces()[p];
     options.judge.push_back((piece.round_left > 0.0 || piece.round_right > 0.0) &&
-                            !sharp_step(parts.pieces(), p));
+                            edges[p] == SharpEdge::none);
   }
   const std::vector<double> inner(found.planes.begin() + 1, found.planes.end() - 1);
   const RevolvedTorsion whole = solve_contour(parts.pieces(), inner, options);
@@ -180,7 +175,7 @@ ShaftSections shaft_sections(const ShaftContour& contour) {
         section.flexibility += found.segment_flexibility[s];
         section.inertia += found.segment_inertia[s];
       }
-    find_stress(section, station, planes_of[k], k, parts, whole);
+    find_stress(section, station, planes_of[k], k, parts, whole, edges);
     found.naive_flexibility += section.naive_flexibility;
     from += station.length;
     found.sections.push_back(std::move(section));

@@ -19,7 +19,7 @@ WholeShaft whole_shaft(const ShaftContour& contour, int halvings) {
   const std::vector<StationSection> sections = check_contour(contour, check);
   if (!findings.empty()) throw ModelError(findings);
   const ContourParts parts(contour, sections, ContourVariant::likely);
-  const RevolvedMesh grid = RevolvedMesher(parts.pieces(), {}).mesh(halvings);
+  const RevolvedMesh grid = RevolvedMesher(parts.pieces()).mesh(halvings);
   const FieldUnknowns unknowns = field_unknowns(grid.mesh, std::vector<bool>(grid.mesh.nodes.size(), false));
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const auto cube = [](const PlanePoint& p) { return p[1] * p[1] * p[1]; };

@@ -55,8 +55,9 @@ struct ExactOptions {
   std::function<void(const ContactChange&)> on_change = {};
 };
 
-/// What keeps the system from being propagated exactly, and what to use instead; nullopt: nothing.
-std::optional<std::string> why_not_exact(const System& system);
+/// What keeps the system from being propagated exactly, and what to use instead; nullopt: nothing. steps: a method of
+/// steps can be taken in its place, and is advised.
+std::optional<std::string> why_not_exact(const System& system, bool steps = true);
 /// Throws ModelError with all that propagate() refuses of a system, its options and its start.
 void check_propagation(const System& system, const ExactOptions& options, const State& state);
 

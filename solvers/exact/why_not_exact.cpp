@@ -6,12 +6,12 @@
 
 namespace drev {
 
-std::optional<std::string> why_not_exact(const System& system) {
+std::optional<std::string> why_not_exact(const System& system, bool steps) {
   const auto name = [&](ElementId e) { return system.element_instances()[idx(index(e))].name; };
   for (const GeneralTerm& g : system.generals())
-    return name(g.element) +
-           " is a general element, whose force and history the series does not know; take an implicit method";
-  if (auto why = system.why_not_varying_inertia("exact propagation")) return why;
+    return name(g.element) + " is a general element, whose force and history the series does not know" +
+           (steps ? "; take an implicit method" : "");
+  if (auto why = system.why_not_varying_inertia("exact propagation", steps)) return why;
   for (const FrictionTerm& f : system.frictions()) {
     if (f.friction->rigid())
       for (const Entry& e : f.nodes)
@@ -27,8 +27,8 @@ std::optional<std::string> why_not_exact(const System& system) {
   for (int k = 0; k < system.prescribed_count(); ++k)
     if (system.prescribed()[idx(k)].at && !system.prescribed()[idx(k)].piecewise_quadratic)
       return "the motion of " + system.node_names()[idx(system.prescribed_node(k))] +
-             " is no polynomial of time, which is what the series knows; take dormand_prince or an implicit "
-             "method";
+             " is no polynomial of time, which is what the series knows" +
+             (steps ? "; take dormand_prince or an implicit method" : "");
   return std::nullopt;
 }
 

@@ -234,6 +234,7 @@ TEST_CASE("Varying inertia: what it needs, and what refuses it by name") {
   const auto why = why_not_exact(system);
   REQUIRE(why);
   CHECK(test::contains(*why, "engine has an inertia that follows the angle (varying_inertia)"));
+  CHECK(test::contains(why_not_exact(system, false).value_or(""), "does not take; take its mean inertia"));
   CHECK(test::contains(message([&] {
                          sweep_linear(system, {.speeds = {100.0, 120.0}});
                        }),

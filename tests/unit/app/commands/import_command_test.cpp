@@ -191,6 +191,7 @@ TEST_CASE("Columns of a mass-elastic table that say the same, or are spelt other
   CHECK(contains(capital, "the column \"Stiffness_Nm_per_rad\"; did you mean stiffness_Nm_per_rad"));
   CHECK(contains(said("J [kgm2],stiffness_Nm_per_rad\n1,5\n2,\n"),
                  "the column \"J [kgm2]\"; did you mean inertia_kg_m2"));
+  CHECK(contains(said("Node,inertia_kg_m2,NAME\na,1,A\nb,2,B\n"), "the column \"Node\"; did you mean node?"));
   std::ofstream(folder / "t.json") << "{\n\"components\": [\n}";
   CHECK(contains(drev_command({"import", (folder / "t.json").string()}).err,
                  "t.json:3: is no JSON: unexpected"));

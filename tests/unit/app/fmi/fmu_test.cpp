@@ -120,6 +120,33 @@ TEST_CASE("An FMU under a torque that is held moves as the closed form says") {
   CHECK(log.last.find("token") != std::string::npos);
 }
 
+TEST_CASE("A model that only methods of steps take is no FMU, and none of them is advised") {
+  const test::TemporaryFolder folder;
+  const std::string model = R"(format = 1
+[nodes]
+wheel = {}
+shaker = { given_motion = { amplitude_rad = 0.1, frequency_Hz = 5 } }
+[elements]
+J = { type = "inertia", node = "wheel", inertia_kg_m2 = 0.01 }
+shaft = { type = "shaft_spring", nodes = ["shaker", "wheel"], stiffness_Nm_per_rad = 4 }
+[run]
+method = "dormand_prince"
+tolerance = 1e-8
+duration_s = 1
+)";
+  std::ofstream(folder / "model.toml") << model;
+  std::ofstream(folder / "interface.toml")
+      << interface_text({"model.toml", "", "token", {"wheel"}, {}, {"wheel.angle_rad"}, {}, {}});
+  Logged log;
+  CHECK(fmi3InstantiateCoSimulation("wheel", "token", (folder / "").string().c_str(), false, false, false,
+                                    false, nullptr, 0, &log, &Logged::take, nullptr) == nullptr);
+  INFO(log.last);
+  CHECK(test::contains(log.last,
+                       "cannot be an FMU, which is propagated exactly whatever its method: the motion "
+                       "of shaker is no polynomial of time"));
+  CHECK_FALSE(test::contains(log.last, "dormand_prince"));
+}
+
 TEST_CASE("The bytes of an FMU's state are read as they were written, or refused") {
   Logged log;
   void* fmu = make(log);

@@ -84,7 +84,11 @@ TEST_CASE("Sections that are judged take diameter and stress concentration from 
   const ShaftSection& station = shaft_of(judged).sections()->sections[1];
   CHECK(groove.diameter == Approx(0.13));
   CHECK(groove.stress_concentration == Approx(station.stress_factor.value));
-  CHECK_THROWS_WITH(shaft_case(text + "[class.sections]\nshaft_3 = {}\n"), Catch::Contains("sharp shoulder"));
+  CHECK_THROWS_WITH(shaft_case(text + "[class.sections]\nshaft_3 = {}\n"),
+                    Catch::Contains("sharp shoulder") && Catch::Contains("or the shoulder a fillet"));
+  text.insert(text.rfind("]"), ", { length_mm = 50, outer_diameter_mm = 120, end_diameter_mm = 150 }\n");
+  CHECK_THROWS_WITH(shaft_case(text + "[class.sections]\nshaft_4 = {}\n"),
+                    Catch::Contains("station 4 has a sharp corner") && !Catch::Contains("fillet"));
 }
 
 TEST_CASE(

@@ -5,6 +5,7 @@
 #include <drev/models/shafts/shaft_contour.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -83,6 +84,51 @@ TEST_CASE("A taper, a groove, a keyway and a sharp shoulder of a contour", "[sha
   CHECK(s.sections[2].torsion_constant == Approx(0.900148 * polar_moment(0.15)).epsilon(1e-4));
   CHECK(s.sections[3].stress_place == "sharp shoulder");
   CHECK(std::isinf(s.sections[3].stress_factor.value));
+}
+
+TEST_CASE("A contour that is drawn from its other end has the same segments", "[shafts]") {
+  ShaftContour drawn = plain_shaft({{.length = 0.2, .outer_diameter = 0.1, .fillet_end = 0.01},
+                                    {.length = 0.1, .outer_diameter = 0.4},
+                                    {.length = 0.05, .outer_diameter = 0.1, .fillet_start = 0.01}});
+  for (const double up_to : {kNotGiven, 5000.0}) {
+    drawn.up_to_frequency = up_to;
+    ShaftContour mirrored = drawn;
+    std::reverse(mirrored.stations.begin(), mirrored.stations.end());
+    for (ShaftStation& s : mirrored.stations) std::swap(s.fillet_start, s.fillet_end);
+    const ShaftSections a = shaft_sections(drawn), b = shaft_sections(mirrored);
+    const std::size_t n = a.segment_flexibility.size();
+    REQUIRE(b.segment_flexibility.size() == n);
+    for (std::size_t k = 0; k < n; ++k) {
+      INFO("segment " << k + 1 << " of " << n);
+      CHECK(a.segment_flexibility[k] == Approx(b.segment_flexibility[n - 1 - k]).epsilon(1e-3));
+    }
+    // Between two planes no section is stiffer than one that turns as a whole.
+    CHECK(a.sections[1].flexibility > a.sections[1].naive_flexibility);
+  }
+}
+
+TEST_CASE("Stress has no limit where a taper turns outwards", "[shafts]") {
+  const auto places = [](std::vector<ShaftStation> stations) {
+    std::vector<std::string> found;
+    for (const ShaftSection& s : shaft_sections(plain_shaft(std::move(stations))).sections) {
+      CHECK(std::isinf(s.stress_factor.value) == s.stress_place.starts_with("sharp"));
+      found.push_back(s.stress_place);
+    }
+    return found;
+  };
+  using Places = std::vector<std::string>;
+  CHECK(places({{.length = 0.2, .outer_diameter = 0.15, .end_diameter = 0.1},
+                {.length = 0.1, .outer_diameter = 0.1},
+                {.length = 0.1, .outer_diameter = 0.12}}) ==
+        Places{"sharp corner", "sharp shoulder", "surface"});
+  // Held ends turn as a whole, as a thicker part would; a corner that turns inwards is relieved.
+  CHECK(places({{.length = 0.1, .outer_diameter = 0.1, .end_diameter = 0.2}}) == Places{"sharp corner"});
+  CHECK(places({{.length = 0.1, .outer_diameter = 0.2},
+                {.length = 0.1, .outer_diameter = 0.2, .end_diameter = 0.1992}}) ==
+        Places{"surface", "surface"});
+  // A groove beside it does not hide a shoulder.
+  CHECK(places({{.length = 0.3, .outer_diameter = 0.1, .groove = ShaftGroove{0.1, 0.01, 0.01}},
+                {.length = 0.1, .outer_diameter = 0.12}}) == Places{"sharp shoulder", "surface"});
 }
 
 TEST_CASE("Cams and hubs lie between bounds, and cams far from their own section's stiffness", "[shafts]") {

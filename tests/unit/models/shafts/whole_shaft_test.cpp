@@ -46,7 +46,7 @@ TEST_CASE("Segments of a contour against the whole shaft as one sparse system", 
     CHECK(fine[i] == Approx(whole.frequency_Hz[i]).epsilon(0.006));
   }
   CHECK(coarse[0] == Approx(whole.frequency_Hz[0]).epsilon(0.03));
-  CHECK(std::abs(coarse[3] / whole.frequency_Hz[3] - 1.0) > 0.05);
+  CHECK(std::abs(coarse[3] / whole.frequency_Hz[3] - 1.0) > 0.01);
 }
 
 }  // namespace
