@@ -15,8 +15,15 @@ namespace drev {
 
 class LinearResponse;
 class TrigonometricSum;
+struct DampedPoles;
 
-/// Fills sweep.modes, growth, peaks and criticals. pause: as LinearSweepOptions::pause.
+/// Finds sweep.modes and growth, and what residues at these modes take; sweep.modes_note where modes are missing. Up to 400
+/// unknowns all modes that swing, dense, at one speed or more. A mode that swings at some of the speeds only, and is overdamped
+/// at the others, is 0 at these.
+void find_sweep_modes(const System& system, LinearResponse& response, const std::function<void()>& pause,
+                      LinearSweep& sweep, DampedPoles& poles);
+
+/// Fills these, peaks and criticals. pause: as LinearSweepOptions::pause.
 void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
                       const std::function<void()>& pause, LinearSweep& sweep);
 
