@@ -167,6 +167,8 @@ std::complex<double> SweepModes::at(Eigen::Index mode, double speed) const {
   while (i + 2 < speeds.size() && speeds[i + 1] < speed) ++i;
   if (speeds.size() < 2) return lambda(mode, 0);
   const double part = (speed - speeds[i]) / (speeds[i + 1] - speeds[i]);
+  if (lambda(mode, i) == 0.0 || lambda(mode, i + 1) == 0.0)
+    return part == 0.0 ? lambda(mode, i) : part == 1.0 ? lambda(mode, i + 1) : 0.0;
   return (1.0 - part) * lambda(mode, i) + part * lambda(mode, i + 1);
 }
 

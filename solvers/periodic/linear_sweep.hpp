@@ -122,7 +122,7 @@ struct SweepCritical {
 struct SweepModes {
   Vector speeds;            ///< rad/s
   Eigen::MatrixXcd lambda;  ///< eigenvalues, modes x speeds [1/s], Im > 0; 0: no oscillation
-  /// lambda of a mode at a speed, interpolated linearly between columns, at both of which it oscillates.
+  /// lambda of a mode at a speed, interpolated linearly between columns; 0: it does not oscillate at both of these.
   std::complex<double> at(Eigen::Index mode, double speed) const;
 };
 

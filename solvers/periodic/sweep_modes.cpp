@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "solvers/periodic/damped_pairs.hpp"
@@ -14,11 +15,16 @@ namespace drev {
 
 namespace {
 
-constexpr int kMostUnknowns = 400;  // unknowns up to which damped modes are dense; beyond, one by one
-constexpr int kFirstModes = 16;     // number of undamped modes that are found first
-constexpr int kMostModes = 128;     // largest number of undamped modes that are found
-constexpr double kSameMode = 1e-9;  // relative difference of lambda of one and the same mode [-]
-constexpr int kModeSpeeds = 9;      // number of speeds for modes if loads depend on the speed
+constexpr int kMostUnknowns = 400;   // unknowns up to which damped modes are dense; beyond, one by one
+constexpr int kFirstModes = 16;      // number of undamped modes that are found first
+constexpr int kMostModes = 128;      // largest number of undamped modes that are found
+constexpr double kSameMode = 1e-9;   // relative difference of lambda of one and the same mode [-]
+constexpr int kModeSpeeds = 9;       // number of speeds for modes if loads depend on the speed
+constexpr int kMostModeSpeeds = 33;  // largest number with those at which their damping bends
+constexpr double kOneSpeed = 1e-10;  // relative difference of speeds that are one but for rounding [-]
+constexpr double kSameSlope =
+    1e-9;  // difference of a load's damping that is rounding, relative to the largest [-]
+constexpr double kBend = 1e-2;  // the same, off the line between two speeds, that takes one between them [-]
 
 /// For each mode of `next` the number of the mode of `last` that it continues, by shape: largest |x' y| / (|x| |y|) first,
 /// before modes that do not swing at present those that do. -1: none, it is a mode more.
@@ -48,12 +54,52 @@ std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const std::vecto
   return from;
 }
 
-/// Whether the damping of the loads differs between the speeds.
-bool damping_follows(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
-  if (!response.content().follows_speed() || speeds.size() < 2) return false;
-  const Vector first = load_damping(system, speeds.front());
-  return first != load_damping(system, speeds[speeds.size() / 2]) ||
-         first != load_damping(system, speeds.back());
+/// The speeds at which the modes are found: the middle one where no load damps differently at any of the sweep's speeds; else
+/// kModeSpeeds of equal distance, and of the sweep's speeds those between which the loads' damping bends.
+Vector speeds_of_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
+  const double low = speeds.front(), high = speeds.back();
+  const Vector middle = Vector::Constant(1, 0.5 * (low + high));
+  if (!response.content().follows_speed() || speeds.size() < 2) return middle;
+  std::map<double, bool> wanted;
+  for (int i = 0; i < kModeSpeeds; ++i) wanted[low + (high - low) * i / (kModeSpeeds - 1)] = true;
+  for (const double speed : speeds) {
+    const auto near = wanted.lower_bound((1.0 - kOneSpeed) * speed);
+    if (near == wanted.end() || near->first > (1.0 + kOneSpeed) * speed) wanted[speed] = false;
+  }
+  std::vector<Finding> none;
+  OrderContent content(system, {}, none);
+  std::vector<double> at;
+  std::vector<char> taken;
+  Eigen::MatrixXd slopes(static_cast<Eigen::Index>(content.loads().size()),
+                         static_cast<Eigen::Index>(wanted.size()));
+  for (const auto& [speed, take] : wanted) {
+    Eigen::Index load = 0;
+    for (const OrderContent::Content& here : content.at(response.direction() * speed))
+      slopes(load++, static_cast<Eigen::Index>(at.size())) = here.speed_slope;
+    at.push_back(speed), taken.push_back(take);
+  }
+  const double largest = slopes.cwiseAbs().maxCoeff();
+  if (!((slopes.colwise() - slopes.col(0)).cwiseAbs().maxCoeff() > kSameSlope * largest)) return middle;
+  for (int count = kModeSpeeds; count < kMostModeSpeeds; ++count) {
+    double most = kBend * largest;
+    std::size_t bent = at.size();
+    for (std::size_t from = 0, to = 0; from + 1 < at.size(); from = to) {
+      for (to = from + 1; !taken[to];) ++to;
+      for (std::size_t i = from + 1; i < to; ++i) {
+        const double part = (at[i] - at[from]) / (at[to] - at[from]);
+        const auto column = [&](std::size_t j) { return slopes.col(static_cast<Eigen::Index>(j)); };
+        const double off =
+            (column(i) - (1.0 - part) * column(from) - part * column(to)).cwiseAbs().maxCoeff();
+        if (off > most) most = off, bent = i;
+      }
+    }
+    if (bent == at.size()) break;
+    taken[bent] = 1;
+  }
+  std::vector<double> found;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    if (taken[i]) found.push_back(at[i]);
+  return Eigen::Map<const Vector>(found.data(), static_cast<Eigen::Index>(found.size()));
 }
 
 /// Takes a growth at column number i of the modes, if it is faster.
@@ -89,16 +135,12 @@ void number_modes(SweepModes& modes, DampedPoles& poles) {
 
 SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds,
                         const std::function<void()>& pause, LinearSweep& sweep, DampedPoles& poles) {
-  const bool follows = damping_follows(system, response, speeds);
-  const int count = follows ? kModeSpeeds : 1;
   SweepModes modes;
-  modes.speeds.resize(count);
+  modes.speeds = speeds_of_modes(system, response, speeds);
   Eigen::MatrixXcd shapes(system.node_count(), 0);  // of each mode, where it swung last
   std::vector<char> swings;                         // for each: it does at the last speed
-  for (int i = 0; i < count; ++i) {
+  for (Eigen::Index i = 0; i < modes.speeds.size(); ++i) {
     pause();
-    const double part = count > 1 ? static_cast<double>(i) / (count - 1) : 0.5;
-    modes.speeds[i] = speeds.front() + part * (speeds.back() - speeds.front());
     const DampedModeSet set = solve_damped_modes(system, {.damping = load_damping(system, modes.speeds[i])});
     note_growth(modes, i, fastest_growth(system, set), sweep);
     std::vector<Eigen::Index> from = matched(shapes, swings, set.shapes);
@@ -129,8 +171,7 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
 SweepModes follow_pairs(const System& system, LinearResponse& response, const std::vector<double>& speeds,
                         double highest, const std::function<void()>& pause, LinearSweep& sweep,
                         DampedPoles& poles) {
-  const bool follows = damping_follows(system, response, speeds);
-  const int columns = follows ? kModeSpeeds : 1, all = system.elastic_mode_count();
+  const int all = system.elastic_mode_count();
   ModeSet undamped;
   for (int count = std::min(all, kFirstModes);; count = std::min({all, 2 * count, kMostModes})) {
     undamped = solve_modes(system, {.count = count});
@@ -138,17 +179,15 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
   }
   DampedPairs& pairs = poles.pairs;
   SweepModes modes;
-  modes.speeds.resize(columns);
-  modes.lambda.setZero(undamped.count(), columns);
+  modes.speeds = speeds_of_modes(system, response, speeds);
+  modes.lambda.setZero(undamped.count(), modes.speeds.size());
   std::vector<Eigen::VectorXcd> shapes;
   std::vector<std::complex<double>> last;
   for (int m = 0; m < undamped.count(); ++m) {
     shapes.emplace_back(undamped.vectors.col(m).cast<std::complex<double>>());
     last.emplace_back(0.0, undamped.omega(m));
   }
-  for (int i = 0; i < columns; ++i) {
-    const double part = columns > 1 ? static_cast<double>(i) / (columns - 1) : 0.5;
-    modes.speeds[i] = speeds.front() + part * (speeds.back() - speeds.front());
+  for (Eigen::Index i = 0; i < modes.speeds.size(); ++i) {
     const Vector damping = pairs.damping() + load_damping(system, modes.speeds[i]);
     poles.damping.push_back(damping);
     Eigen::VectorXcd& found = poles.lambda.emplace_back(Eigen::VectorXcd::Zero(undamped.count()));

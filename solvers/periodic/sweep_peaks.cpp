@@ -31,7 +31,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 class Search {
  public:
   Search(LinearResponse& response, TrigonometricSum& sum, const std::function<void()>& pause,
-         LinearSweep& sweep, const DampedPoles& poles)
+         LinearSweep& sweep, DampedPoles& poles)
       : response_(response),
         sum_(sum),
         pause_(pause),
@@ -158,11 +158,38 @@ class Search {
   }
 
  private:
+  struct Meeting {
+    double speed = 0.0;
+    std::complex<double> lambda;
+    double distance = kInfinite;  // of the order from the mode's frequency, as a part of half its width [-]
+  };
+  /// The speed near `speed`, which is of modes between the modes' speeds, at which an order is nearest to a mode's own frequency there
+  /// beside its width: damping that begins between two speeds can take the mode away from the order.
+  Meeting meeting(Eigen::Index mode, double order, double speed) {
+    constexpr int kMostSteps = 8;
+    Meeting best;
+    for (int step = 0; step < kMostSteps; ++step) {
+      if (!(speed >= low_ && speed <= high_) || sweep_.modes.at(mode, speed) == 0.0) break;
+      speed = known_or(speed);
+      const std::complex<double> lambda = pole_at(mode, speed).lambda[0];
+      const double off = std::abs(order * speed - lambda.imag());
+      const double distance = off / (std::abs(lambda.real()) + 2.0 * kSameSpeed * std::abs(lambda));
+      if (distance < best.distance) best = {speed, lambda, distance};
+      if (off <= kSameSpeed * lambda.imag()) break;
+      speed = lambda.imag() / order;
+    }
+    return best;
+  }
   /// Enters the critical of order number k in mode m, and the speeds of its middle and its flanks.
-  void seed(Eigen::Index m, std::size_t k, double speed) {
-    const std::complex<double> lambda = sweep_.modes.at(m, speed);
+  void seed(Eigen::Index m, std::size_t k, double near) {
+    const auto [speed, lambda, distance] = meeting(m, sweep_.orders[k], near);
+    if (distance > 1.0) return;
     const double ratio = -lambda.real() / std::abs(lambda);
     if (ratio > kTooDamped) return;
+    for (const SweepCritical& other : sweep_.criticals)
+      if (other.mode == m && other.order == sweep_.orders[k] &&
+          std::abs(other.speed - speed) <= kSameSeed * std::abs(lambda.real()) / other.order)
+        return;
     SweepCritical critical;
     critical.mode = static_cast<int>(m);
     critical.order = sweep_.orders[k];
@@ -208,12 +235,15 @@ class Search {
         const double middle = 0.5 * (low + high);
         ((above(middle) < 0.0) == rises ? low : high) = middle;
       }
-      double speed = std::clamp(0.5 * (low + high), low_, high_);
-      const auto known = curves_.lower_bound((1.0 - kSameSpeed) * speed);
-      if (known != curves_.end() && known->first <= (1.0 + kSameSpeed) * speed) speed = known->first;
+      const double speed = known_or(std::clamp(0.5 * (low + high), low_, high_));
       if (found.empty() || speed > (1.0 + kSameSpeed) * found.back()) found.push_back(speed);
     }
     return found;
+  }
+  /// The speed, or that of the curves which it is but for rounding.
+  double known_or(double speed) const {
+    const auto known = curves_.lower_bound((1.0 - kSameSpeed) * speed);
+    return known != curves_.end() && known->first <= (1.0 + kSameSpeed) * speed ? known->first : speed;
   }
   /// Whether a speed is known already. Modes that coincide meet an order at speeds that differ by rounding alone: all of them
   /// entered, the rounding of the curve would make a top of one of them, between neighbours without the curve's own top.
@@ -298,7 +328,8 @@ class Search {
   /// x = (o w - Im lambda) / |Re lambda| the amplitude is r / (1 + i x) + b0 + b1 x + b2 x^2, from r, the mode's residue
   /// over |Re lambda|, and values at x = -1, 0, 1.
   void find_own_parts(SweepCritical& critical, int order) {
-    const std::complex<double> lambda = sweep_.modes.at(critical.mode, critical.speed), i(0.0, 1.0);
+    const DampedPole pole = pole_at(critical.mode, critical.speed);
+    const std::complex<double> lambda = pole.lambda[0], i(0.0, 1.0);
     const double width = std::abs(lambda.real()) / critical.order;
     const auto at = [&](double x) -> Eigen::RowVectorXcd {
       pause_();
@@ -307,7 +338,8 @@ class Search {
       return point_.amplitude.row(order);
     };
     const Eigen::RowVectorXcd below = at(-1.0), above = at(1.0), here = at(0.0);
-    const Eigen::RowVectorXcd own = response_.amplitudes_of(residue(critical)) / std::abs(lambda.real()),
+    const Eigen::RowVectorXcd own = response_.amplitudes_of(poles_.pairs.residue(pole, response_.forces())) /
+                                    std::abs(lambda.real()),
                               rest = here - own, slope = 0.5 * (above - below) + 0.5 * i * own,
                               bend = 0.5 * (above + below - own) - rest;
     critical.section = most_moved(own);
@@ -324,24 +356,16 @@ class Search {
     }
   }
 
-  /// Residue of the forces last solved for at a critical's mode, linearly between the columns of the modes.
-  Eigen::VectorXcd residue(const SweepCritical& critical) const {
-    const Vector& speeds = sweep_.modes.speeds;
-    const Eigen::VectorXcd p = response_.forces();
-    if (speeds.size() == 1) return poles_.residue(0, critical.mode, p);
-    const double step = speeds[1] - speeds[0], most = static_cast<double>(speeds.size()) - 2.0;
-    const double from = std::clamp(std::floor((critical.speed - speeds[0]) / step), 0.0, most),
-                 part = (critical.speed - speeds[0]) / step - from;
-    const auto column = static_cast<std::size_t>(from);
-    return (1.0 - part) * poles_.residue(column, critical.mode, p) +
-           part * poles_.residue(column + 1, critical.mode, p);
+  /// A mode with the loads' damping at a speed.
+  DampedPole pole_at(Eigen::Index mode, double speed) {
+    return poles_.at(sweep_.modes, mode, speed, response_.damping_at(speed));
   }
 
   LinearResponse& response_;
   TrigonometricSum& sum_;
   const std::function<void()>& pause_;
   LinearSweep& sweep_;
-  const DampedPoles& poles_;
+  DampedPoles& poles_;
   double low_, high_;
   std::map<double, SweepPoint> curves_;  // of the grid and the seeds, by speed
   std::vector<double> largest_;          // largest finite half range of each section

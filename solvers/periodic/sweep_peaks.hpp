@@ -8,7 +8,8 @@
 /// section. An order that meets an undamped mode is an infinite peak of every section that the mode moves.
 ///
 /// A critical is in the section in which the mode's own part |r| / |Re lambda| of the order's amplitude is largest, with the
-/// residue r of the amplitude at i o w = lambda from the shape of the damped mode (DampedPairs::residue()).
+/// residue r of the amplitude at i o w = lambda from the shape of the damped mode (DampedPairs::residue()) with the damping at the
+/// speed at which they meet.
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 namespace drev {
