@@ -84,6 +84,7 @@ std::string campbell_as_text(const SweepRequest& request, const LinearSweep& swe
     if (some_stop) modes.back().push_back(speeds_text(sweep.modes.speeds, frequencies));
   }
   text += columns_text(modes) + "\n";
+  if (!sweep.modes_note.empty()) text += wrap("Criticals: " + sweep.modes_note, 0) + "\n";
   if (sweep.criticals.empty())
     return text + "No order that the loads hold meets a natural frequency within the speeds.\n";
   std::vector<std::vector<std::string>> rows{{"critical [rpm]", "order", "mode", "at [Hz]", "damping ratio",
@@ -125,6 +126,7 @@ Json campbell_object(const SweepRequest& request, const LinearSweep& sweep) {
   object["mode_speeds_rpm"] = std::move(speeds);
   object["modes"] = std::move(modes);
   object["criticals"] = std::move(criticals);
+  object["criticals_note"] = text_or_null(sweep.modes_note);
   object["note"] = text_or_null(request.model.model_case.note);
   return object;
 }

@@ -1,4 +1,5 @@
 #include <drev/core/error.hpp>
+#include <drev/core/law/frequency_stiffness.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
@@ -213,6 +214,22 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
   return modes;
 }
 
+/// Which elements have another stiffness in the amplitudes of the sweep than in its modes; empty: none.
+std::string fixed_stiffness_note(const System& system) {
+  std::vector<std::string> names;
+  for (const FrequencyTerm& term : system.frequency_terms())
+    if (term.stiffness->follows_mean_torque() || term.stiffness->amplitudes().size() > 1)
+      names.push_back(system.element_instances()[idx(index(term.element))].name);
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    list += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
+  return names.empty() ? ""
+                       : "modes, and where orders meet them, have the stiffness of " + list +
+                             " at its at_mean_torque and at_amplitude; amplitudes and peaks have that under "
+                             "the mean torque and amplitude at each speed, and the peaks say where the "
+                             "vibration is largest";
+}
+
 }  // namespace
 
 void find_sweep_modes(const System& system, LinearResponse& response, const std::function<void()>& pause,
@@ -233,6 +250,8 @@ void find_sweep_modes(const System& system, LinearResponse& response, const std:
     sweep.modes_note = std::string(error.what()) +
                        ": a resonance that is narrower than the distance of the speeds can be missed";
   }
+  if (const std::string fixed = fixed_stiffness_note(system); !fixed.empty())
+    sweep.modes_note += (sweep.modes_note.empty() ? "" : "; ") + fixed;
 }
 
 }  // namespace drev

@@ -65,10 +65,14 @@ function showFigures() {
   );
   const order = [...sweep.criticals].sort((a, b) => (b.own_amplitude ?? Infinity) - (a.own_amplitude ?? Infinity));
   byId("figures").append(make("h3", {}, "Critical speeds, largest amplitude of their own mode first"));
-  if (!order.length)
-    return byId("figures").append(
-      make("p", {}, page.criticals_note || "No order that the loads hold meets a natural frequency within the speeds."),
-    );
+  if (page.criticals_note) byId("figures").append(make("p", {}, page.criticals_note));
+  if (!order.length) {
+    if (page.campbell || !page.criticals_note)
+      byId("figures").append(
+        make("p", {}, "No order that the loads hold meets a natural frequency within the speeds."),
+      );
+    return;
+  }
   byId("figures").append(
     table(
       ["speed [rpm]", "order", "mode", "frequency [Hz]", "damping ratio", "amplitude", "of the mode", "half range", "in"],

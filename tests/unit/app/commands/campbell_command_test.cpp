@@ -80,3 +80,27 @@ TEST_CASE("A mode that is overdamped at some speeds is listed, with a frequency 
     CHECK(contains(read_file(out + "/modes.csv"), ",,\n"));
   }
 }
+
+TEST_CASE("Criticals say that a coupling has another stiffness in them than in the amplitudes",
+          "[campbell]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "coupling.toml").string();
+  for (const bool follows : {true, false}) {
+    std::ofstream(file)
+        << "format = 1\n[nodes]\na = { constant_speed_rpm = 600 }\nb = {}\n[elements]\n"
+           "J = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 1 }\n"
+           "rubber = { type = \"elastic_coupling\", nodes = [\"a\", \"b\"], by_mean_torque = { "
+        << (follows ? "mean_torque_Nm = [0, 500], stiffness_Nm_per_rad = [1000, 2000], loss_factor = [0, 0]"
+                    : "mean_torque_Nm = [0], stiffness_Nm_per_rad = [1000], loss_factor = [0]")
+        << " } }\ne = { type = \"engine_order_torque\", node = \"b\", mean_Nm = 250, harmonics = { "
+           "order = [1], amplitude_Nm = [1] } }\n";
+    for (const char* command : {"campbell", "sweep"}) {
+      const auto text = drev_command({command, file, "--speeds", "100:100:900"}),
+                 json = drev_command({command, file, "--speeds", "100:100:900", "--json"});
+      INFO(text.err << text.out << json.out);
+      REQUIRE(json.exit_code == 0);
+      CHECK(contains(text.out, "stiffness of rubber at its at_mean_torque") == follows);
+      CHECK(nlohmann::json::parse(json.out).at("criticals_note").is_null() != follows);
+    }
+  }
+}
