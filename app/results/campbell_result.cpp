@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
@@ -16,10 +17,16 @@ namespace {
 
 constexpr int kSignificant = 6;
 
-/// Below kRounding the damping ratio of an undamped mode: 0 without a sign.
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Not a number: the mode does not swing.
+double frequency_of(std::complex<double> lambda) { return lambda == 0.0 ? kNone : to_hz(lambda.imag()); }
+
+/// Below kRounding the damping ratio of an undamped mode: 0 without a sign. Not a number: the mode does not swing.
 double damping_ratio_of(std::complex<double> lambda) {
   constexpr double kRounding = 1e-12;
-  const double ratio = std::abs(lambda) > 0.0 ? -lambda.real() / std::abs(lambda) : 0.0;
+  if (lambda == 0.0) return kNone;
+  const double ratio = -lambda.real() / std::abs(lambda);
   return std::abs(ratio) > kRounding ? ratio : 0.0;
 }
 
@@ -32,12 +39,30 @@ double relative(const LinearSweep& sweep, const SweepCritical& critical) {
   return largest > 0.0 ? critical.own_amplitude / largest : 0.0;
 }
 
-/// Frequencies as a range where they depend on the speed.
-std::string range_text(const Eigen::RowVectorXd& values, int significant) {
-  const std::string low = digits(values.minCoeff(), significant),
-                    high = digits(values.maxCoeff(), significant);
-  return low == high ? low : low + " .. " + high;
+/// Values as a range where they depend on the speed, without those that are not numbers.
+std::string range_text(const std::vector<double>& values, int significant) {
+  double low = kNone, high = kNone;
+  for (const double value : values) low = std::fmin(low, value), high = std::fmax(high, value);
+  if (std::isnan(low)) return "-";
+  const std::string from = digits(low, significant), to = digits(high, significant);
+  return from == to ? from : from + " .. " + to;
 }
+
+/// The speeds [rpm] at which a mode swings, from the first to the last of each run of them.
+std::string speeds_text(const Vector& speeds, const std::vector<double>& frequencies) {
+  std::string text;
+  for (std::size_t i = 0, end = 0; i < frequencies.size(); i = end + 1) {
+    for (end = i; end < frequencies.size() && !std::isnan(frequencies[end]);) ++end;
+    if (end == i) continue;
+    const auto rpm_text = [&](std::size_t at) {
+      return short_digits(to_rpm(speeds[static_cast<Eigen::Index>(at)]), kSignificant);
+    };
+    text += (text.empty() ? "" : ", ") + rpm_text(i) + (end > i + 1 ? " .. " + rpm_text(end - 1) : "");
+  }
+  return text;
+}
+
+std::string csv_value(double value) { return std::isnan(value) ? "" : to_text(value); }
 
 }  // namespace
 
@@ -49,12 +74,17 @@ std::string campbell_as_text(const SweepRequest& request, const LinearSweep& swe
           of_reference(request.model.model_case.model) +
           (request.options.close_contacts ? ", contacts closed" : "") + "\n\n";
   std::vector<std::vector<std::string>> modes{{"mode", "frequency [Hz]", "damping ratio"}};
+  const bool some_stop = (sweep.modes.lambda.array() == 0.0).any();
+  if (some_stop) modes.front().emplace_back("swings at [rpm]");
   for (Eigen::Index m = 0; m < sweep.modes.lambda.rows(); ++m) {
-    const Eigen::RowVectorXcd lambda = sweep.modes.lambda.row(m);
-    modes.push_back({std::to_string(m + 1), range_text(lambda.imag() / kTwoPi, kSignificant),
-                     range_text(lambda.unaryExpr(&damping_ratio_of).real(), 4)});
+    std::vector<double> frequencies, ratios;
+    for (const std::complex<double> lambda : sweep.modes.lambda.row(m))
+      frequencies.push_back(frequency_of(lambda)), ratios.push_back(damping_ratio_of(lambda));
+    modes.push_back({std::to_string(m + 1), range_text(frequencies, kSignificant), range_text(ratios, 4)});
+    if (some_stop) modes.back().push_back(speeds_text(sweep.modes.speeds, frequencies));
   }
   text += columns_text(modes) + "\n";
+  if (!sweep.modes_note.empty()) text += wrap("Criticals: " + sweep.modes_note, 0) + "\n";
   if (sweep.criticals.empty())
     return text + "No order that the loads hold meets a natural frequency within the speeds.\n";
   std::vector<std::vector<std::string>> rows{{"critical [rpm]", "order", "mode", "at [Hz]", "damping ratio",
@@ -79,7 +109,7 @@ Json campbell_object(const SweepRequest& request, const LinearSweep& sweep) {
   for (Eigen::Index m = 0; m < sweep.modes.lambda.rows(); ++m) {
     Json frequency = Json::array(), damping = Json::array();
     for (const std::complex<double> lambda : sweep.modes.lambda.row(m)) {
-      frequency.push_back(number(to_hz(lambda.imag())));
+      frequency.push_back(number(frequency_of(lambda)));
       damping.push_back(number(damping_ratio_of(lambda)));
     }
     modes.push_back({{"mode", m + 1}, {"frequency_Hz", frequency}, {"damping_ratio", damping}});
@@ -96,6 +126,7 @@ Json campbell_object(const SweepRequest& request, const LinearSweep& sweep) {
   object["mode_speeds_rpm"] = std::move(speeds);
   object["modes"] = std::move(modes);
   object["criticals"] = std::move(criticals);
+  object["criticals_note"] = text_or_null(sweep.modes_note);
   object["note"] = text_or_null(request.model.model_case.note);
   return object;
 }
@@ -108,7 +139,7 @@ std::string campbell_modes_as_csv(const LinearSweep& sweep) {
   for (Eigen::Index i = 0; i < sweep.modes.speeds.size(); ++i) {
     text += to_text(to_rpm(sweep.modes.speeds[i]));
     for (const std::complex<double> lambda : sweep.modes.lambda.col(i))
-      text += "," + to_text(to_hz(lambda.imag())) + "," + to_text(damping_ratio_of(lambda));
+      text += "," + csv_value(frequency_of(lambda)) + "," + csv_value(damping_ratio_of(lambda));
     text += "\n";
   }
   return text;

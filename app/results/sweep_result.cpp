@@ -60,9 +60,9 @@ std::string sections_text(const SweepRequest& request, const LinearSweep& sweep)
 
 std::string criticals_text(const LinearSweep& sweep) {
   const std::string note = sweep.modes_note.empty() ? "" : wrap("Criticals: " + sweep.modes_note, 0);
-  if (sweep.criticals.empty() && !note.empty()) return note;
+  if (sweep.criticals.empty() && sweep.modes.lambda.size() == 0 && !note.empty()) return note;
   if (sweep.criticals.empty())
-    return "No order that the loads hold meets a natural frequency within the speeds.\n";
+    return note + "No order that the loads hold meets a natural frequency within the speeds.\n";
   std::vector<SweepCritical> shown = sweep.criticals;
   std::stable_sort(shown.begin(), shown.end(),
                    [](const auto& a, const auto& b) { return a.own_amplitude > b.own_amplitude; });

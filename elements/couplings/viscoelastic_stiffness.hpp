@@ -81,7 +81,7 @@ class ViscoelasticStiffness final : public FrequencyStiffness {
     return at(omega, load) - held_stiffness_;
   }
   bool follows_frequency() const override { return params_.frequencies.size() > 1; }
-  bool follows_mean_torque() const override { return !params_.by_mean_torque.at.empty(); }
+  bool follows_mean_torque() const override { return params_.by_mean_torque.at.size() > 1; }
   std::vector<double> amplitudes() const override { return params_.by_amplitude.at; }
   double static_stiffness() const override { return static_stiffness_; }  ///< k_0 [N m/rad]
   double static_beyond_matrices() const override { return at(0.0).real() - static_stiffness_; }

@@ -144,12 +144,12 @@ class Campbell(Result):
 
     @cached_property
     def frequency_Hz(self):
-        """Damped natural frequencies, modes x speeds [Hz]."""
+        """Damped natural frequencies, modes x speeds [Hz]; NaN where a mode is overdamped."""
         return np.array([_array(m["frequency_Hz"]) for m in self.data["modes"]])
 
     @cached_property
     def damping_ratio(self):
-        """Damping ratios, modes x speeds [-]."""
+        """Damping ratios, modes x speeds [-]; NaN where a mode is overdamped."""
         return np.array([_array(m["damping_ratio"]) for m in self.data["modes"]])
 
     @property

@@ -1,6 +1,7 @@
 #include "solvers/periodic/damped_pairs.hpp"
 
 #include <drev/core/assembler.hpp>
+#include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include <cmath>
 #include <complex>
@@ -65,20 +66,14 @@ bool DampedPairs::refine(const Vector& damping, Complex& lambda, Eigen::VectorXc
   return false;
 }
 
-Eigen::VectorXcd DampedPairs::residue(const Vector& damping, const Eigen::VectorXcd& lambda,
-                                      const Eigen::MatrixXcd& shapes, Eigen::Index mode,
-                                      const Eigen::VectorXcd& p) const {
-  std::vector<Eigen::Index> coincide;
-  for (Eigen::Index j = 0; j < lambda.size(); ++j)
-    if (std::abs(lambda[j] - lambda[mode]) <= kCoincide * std::abs(lambda[mode])) coincide.push_back(j);
-  const Eigen::VectorXcd poles = lambda(coincide);
-  const Eigen::MatrixXcd x = shapes(Eigen::all, coincide).colwise().normalized();
+Eigen::VectorXcd DampedPairs::residue(const DampedPole& pole, const Eigen::VectorXcd& p) const {
+  const Eigen::MatrixXcd x = pole.shapes.colwise().normalized();
   Eigen::MatrixXcd n(x.cols(), x.cols());
   for (Eigen::Index j = 0; j < x.cols(); ++j) {
     const Eigen::VectorXcd of_mass = pair_product(pattern_, mass_, x.col(j)),
-                           of_damping = pair_product(pattern_, damping, x.col(j));
+                           of_damping = pair_product(pattern_, pole.damping, x.col(j));
     for (Eigen::Index i = 0; i < x.cols(); ++i)
-      n(i, j) = (x.col(i).transpose() * ((poles[i] + poles[j]) * of_mass + of_damping))(0, 0);
+      n(i, j) = (x.col(i).transpose() * ((pole.lambda[i] + pole.lambda[j]) * of_mass + of_damping))(0, 0);
   }
   // Two of the shapes may be the same one. Real and imaginary parts as unknowns: Eigen's decomposition of complex matrices
   // alone takes as long to compile as half of this room.
@@ -90,6 +85,41 @@ Eigen::VectorXcd DampedPairs::residue(const Vector& damping, const Eigen::Vector
   right << force.real(), force.imag();
   const Vector y = least_squares(parts, right, kSameShape);
   return x * (y.head(k) + Complex(0.0, 1.0) * y.tail(k));
+}
+
+DampedPole DampedPoles::at(const SweepModes& modes, Eigen::Index mode, double speed,
+                           const Vector& damping_here) {
+  Eigen::Index nearest = 0;
+  (modes.speeds.array() - speed).abs().minCoeff(&nearest);
+  const auto column = static_cast<std::size_t>(nearest);
+  const Eigen::VectorXcd& all = lambda[column];
+  const auto coincides = [](Complex a, Complex b) { return std::abs(a - b) <= kCoincide * std::abs(b); };
+  std::vector<Eigen::Index> same{mode};
+  for (Eigen::Index j = 0; j < all.size(); ++j)
+    if (j != mode && coincides(all[j], all[mode])) same.push_back(j);
+  DampedPole pole{damping[column], all(same), shapes[column](Eigen::all, same)};
+  if (modes.speeds.size() == 1) return pole;
+  const Complex guess = modes.at(mode, speed);
+  DampedPole here{damping_here, pole.lambda, pole.shapes};
+  Eigen::Index count = 0;
+  for (Eigen::Index j = 0; j < pole.lambda.size(); ++j) {
+    Complex found = guess;
+    Eigen::VectorXcd shape = pole.shapes.col(j);
+    bool good = pairs.refine(damping_here, found, shape) && found.imag() > 0.0;
+    for (Eigen::Index k = 0; k < all.size() && j == 0; ++k)
+      good &=
+          all[k] == 0.0 || coincides(all[k], all[mode]) || std::abs(found - all[k]) > std::abs(found - guess);
+    if (!good && j == 0) {
+      pole.lambda.setConstant(guess);
+      return pole;
+    }
+    if (!good || (j > 0 && !coincides(found, here.lambda[0]))) continue;
+    here.lambda[count] = found;
+    here.shapes.col(count++) = shape;
+  }
+  here.lambda.conservativeResize(count);
+  here.shapes.conservativeResize(Eigen::NoChange, count);
+  return here;
 }
 
 }  // namespace drev

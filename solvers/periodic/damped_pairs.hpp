@@ -21,6 +21,15 @@
 
 namespace drev {
 
+struct SweepModes;
+
+/// A damped mode, the first, and those that coincide with it.
+struct DampedPole {
+  Vector damping;  ///< values on the pattern at which these are damped modes
+  Eigen::VectorXcd lambda;
+  Eigen::MatrixXcd shapes;  ///< over the unknowns
+};
+
 class DampedPairs {
  public:
   /// The matrices are those with every contact closed.
@@ -29,12 +38,9 @@ class DampedPairs {
   /// out. False: no convergence, and both are as the last step left them.
   bool refine(const Vector& damping, std::complex<double>& lambda, Eigen::VectorXcd& shape);
   const Vector& damping() const { return damping_; }
-  /// Of the response z(s) to forces p that grow as exp(s t), the residue at s = lambda[mode], with the damping at which these are
-  /// damped modes. The matrices are symmetric: of a mode of its own x x' p / x' (2 lambda M + C) x, of modes X that coincide
-  /// X N^-1 X' p, N_ij = x_i' ((lambda_i + lambda_j) M + C) x_j. A lambda of 0 is none.
-  Eigen::VectorXcd residue(const Vector& damping, const Eigen::VectorXcd& lambda,
-                           const Eigen::MatrixXcd& shapes, Eigen::Index mode,
-                           const Eigen::VectorXcd& p) const;
+  /// Of the response z(s) to forces p that grow as exp(s t), the residue at the pole. The matrices are symmetric: of a mode of
+  /// its own x x' p / x' (2 lambda M + C) x, of modes X that coincide X N^-1 X' p, N_ij = x_i' ((lambda_i + lambda_j) M + C) x_j.
+  Eigen::VectorXcd residue(const DampedPole& pole, const Eigen::VectorXcd& p) const;
 
  private:
   const SparseMatrix& pattern_;
@@ -42,15 +48,15 @@ class DampedPairs {
   ComplexElimination elimination_;
 };
 
-/// What residues at damped modes take, for each speed at which these are known.
+/// The modes of a sweep with their shapes, for each of the modes' speeds.
 struct DampedPoles {
   DampedPairs pairs;
   std::vector<Vector> damping = {};
   std::vector<Eigen::VectorXcd> lambda = {};  ///< of modes that coincide all; 0: not known
   std::vector<Eigen::MatrixXcd> shapes = {};  ///< over the unknowns
-  Eigen::VectorXcd residue(std::size_t speed, int mode, const Eigen::VectorXcd& p) const {
-    return pairs.residue(damping[speed], lambda[speed], shapes[speed], mode, p);
-  }
+  /// A mode at a speed with the damping there, from the nearest of the modes' speeds, at which it oscillates. Where no mode is found
+  /// from there, or another one, the mode is that between the modes' speeds, with the damping and the shape of the nearest.
+  DampedPole at(const SweepModes& modes, Eigen::Index mode, double speed, const Vector& damping_here);
 };
 
 }  // namespace drev

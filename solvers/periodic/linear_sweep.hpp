@@ -122,7 +122,7 @@ struct SweepCritical {
 struct SweepModes {
   Vector speeds;            ///< rad/s
   Eigen::MatrixXcd lambda;  ///< eigenvalues, modes x speeds [1/s], Im > 0; 0: no oscillation
-  /// lambda of a mode at a speed, interpolated linearly between columns.
+  /// lambda of a mode at a speed, interpolated linearly between columns; 0: it does not oscillate at both of these.
   std::complex<double> at(Eigen::Index mode, double speed) const;
 };
 
@@ -137,7 +137,8 @@ struct LinearSweep {
   std::vector<SweepPoint> points;
   std::vector<SweepCritical> criticals;  ///< critical speeds, ascending
   SweepModes modes;                      ///< modes, if options.refine is set
-  std::string modes_note;                ///< why modes are missing although options.refine is set
+  std::string
+      modes_note;  ///< what modes and criticals lack, or why they are missing, although options.refine is set
   /// Of these modes, and of real lambda up to 400 unknowns, the one that grows fastest: with a rate > 0 the steady vibration is a
   /// solution of the equations that the train leaves.
   Growth growth;

@@ -1,9 +1,6 @@
 #include "solvers/periodic/sweep_peaks.hpp"
 
-#include <drev/core/error.hpp>
 #include <drev/core/units.hpp>
-#include <drev/solvers/modes/damped_modes.hpp>
-#include <drev/solvers/modes/modes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,11 +17,6 @@ namespace drev {
 
 namespace {
 
-constexpr int kMostUnknowns = 400;      // unknowns up to which damped modes are dense; beyond, one by one
-constexpr int kFirstModes = 16;         // number of undamped modes that are found first
-constexpr int kMostModes = 128;         // largest number of undamped modes that are found
-constexpr double kSameMode = 1e-9;      // relative difference of lambda of one and the same mode [-]
-constexpr int kModeSpeeds = 9;          // number of speeds for modes if loads depend on the speed
 constexpr double kUndamped = 1e-9;      // damping ratio that is rounding [-]
 constexpr double kTooDamped = 0.7;      // damping ratio above which an order has no resonance [-]
 constexpr std::size_t kMostPeaks = 10;  // largest number of peaks of a section
@@ -36,131 +28,10 @@ constexpr double kSameSpeed = 1e-10;    // relative difference of speeds that ar
 constexpr double kOwnPart = 0.1;        // smallest own part of an amplitude whose top is the mode's [-]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// For each mode of `last` the number of the mode of `next` it has become, by shape: largest |x' y| / (|x|
-/// |y|) first.
-std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const Eigen::MatrixXcd& next) {
-  struct Pair {
-    double likeness;
-    Eigen::Index from, to;
-  };
-  std::vector<Pair> pairs;
-  for (Eigen::Index i = 0; i < last.cols(); ++i)
-    for (Eigen::Index j = 0; j < next.cols(); ++j)
-      pairs.push_back(
-          {std::abs(last.col(i).dot(next.col(j))) / (last.col(i).norm() * next.col(j).norm()), i, j});
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [](const Pair& a, const Pair& b) { return a.likeness > b.likeness; });
-  std::vector<Eigen::Index> to(static_cast<std::size_t>(last.cols()), -1);
-  std::vector<bool> taken(static_cast<std::size_t>(next.cols()), false);
-  for (const Pair& pair : pairs) {
-    if (to[static_cast<std::size_t>(pair.from)] >= 0 || taken[static_cast<std::size_t>(pair.to)]) continue;
-    to[static_cast<std::size_t>(pair.from)] = pair.to;
-    taken[static_cast<std::size_t>(pair.to)] = true;
-  }
-  return to;
-}
-
-/// Whether the damping of the loads differs between the speeds.
-bool damping_follows(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
-  if (!response.content().follows_speed() || speeds.size() < 2) return false;
-  const Vector first = load_damping(system, speeds.front());
-  return first != load_damping(system, speeds[speeds.size() / 2]) ||
-         first != load_damping(system, speeds.back());
-}
-
-/// Takes a growth at column number i of the modes, if it is faster.
-void note_growth(const SweepModes& modes, Eigen::Index i, const Growth& here, LinearSweep& sweep) {
-  if (!(here.rate > sweep.growth.rate)) return;
-  sweep.growth = here;
-  if (modes.speeds.size() > 1) sweep.growth_speed = modes.speeds[i];
-}
-
-SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds,
-                        const std::function<void()>& pause, LinearSweep& sweep, DampedPoles& poles) {
-  const bool follows = damping_follows(system, response, speeds);
-  const int count = follows ? kModeSpeeds : 1;
-  SweepModes modes;
-  modes.speeds.resize(count);
-  Eigen::MatrixXcd shapes;
-  for (int i = 0; i < count; ++i) {
-    pause();
-    const double part = count > 1 ? static_cast<double>(i) / (count - 1) : 0.5;
-    modes.speeds[i] = speeds.front() + part * (speeds.back() - speeds.front());
-    const DampedModeSet set = solve_damped_modes(system, {.damping = load_damping(system, modes.speeds[i])});
-    note_growth(modes, i, fastest_growth(system, set), sweep);
-    if (i == 0) {
-      shapes = set.shapes;
-      modes.lambda.setZero(set.shapes.cols(), count);
-    }
-    const std::vector<Eigen::Index> to = matched(shapes, set.shapes);
-    for (std::size_t m = 0; m < to.size(); ++m) {
-      if (to[m] < 0) continue;
-      const auto mode = static_cast<Eigen::Index>(m);
-      modes.lambda(mode, i) = set.modes[static_cast<std::size_t>(to[m])].lambda;
-      shapes.col(mode) = set.shapes.col(to[m]);
-    }
-    poles.damping.push_back(poles.pairs.damping() + load_damping(system, modes.speeds[i]));
-    poles.lambda.emplace_back(modes.lambda.col(i));
-    Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), shapes.cols());
-    for (int node = 0; node < system.node_count(); ++node)
-      if (const NodeMap& map = system.node_map(node); map.unknown >= 0)
-        of_unknowns.row(map.unknown) = shapes.row(node) / map.coeff;
-  }
-  return modes;
-}
-
-/// The modes of systems with many unknowns: undamped modes up to the highest frequency of an order, each
-/// iterated to its damped mode (damped_pairs.hpp). Modes that do not converge, or that converge to one
-/// already found, are 0.
-SweepModes follow_pairs(const System& system, LinearResponse& response, const std::vector<double>& speeds,
-                        double highest, const std::function<void()>& pause, LinearSweep& sweep,
-                        DampedPoles& poles) {
-  const bool follows = damping_follows(system, response, speeds);
-  const int columns = follows ? kModeSpeeds : 1, all = system.elastic_mode_count();
-  ModeSet undamped;
-  for (int count = std::min(all, kFirstModes);; count = std::min({all, 2 * count, kMostModes})) {
-    undamped = solve_modes(system, {.count = count});
-    if (count == std::min(all, kMostModes) || undamped.omega(count - 1) > highest) break;
-  }
-  DampedPairs& pairs = poles.pairs;
-  SweepModes modes;
-  modes.speeds.resize(columns);
-  modes.lambda.setZero(undamped.count(), columns);
-  std::vector<Eigen::VectorXcd> shapes;
-  std::vector<std::complex<double>> last;
-  for (int m = 0; m < undamped.count(); ++m) {
-    shapes.emplace_back(undamped.vectors.col(m).cast<std::complex<double>>());
-    last.emplace_back(0.0, undamped.omega(m));
-  }
-  for (int i = 0; i < columns; ++i) {
-    const double part = columns > 1 ? static_cast<double>(i) / (columns - 1) : 0.5;
-    modes.speeds[i] = speeds.front() + part * (speeds.back() - speeds.front());
-    const Vector damping = pairs.damping() + load_damping(system, modes.speeds[i]);
-    poles.damping.push_back(damping);
-    Eigen::VectorXcd& found = poles.lambda.emplace_back(Eigen::VectorXcd::Zero(undamped.count()));
-    Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), undamped.count());
-    for (std::size_t m = 0; m < shapes.size(); ++m) {
-      const auto mode = static_cast<Eigen::Index>(m);
-      pause();
-      const bool settled = pairs.refine(damping, last[m], shapes[m]);
-      of_unknowns.col(mode) = shapes[m];
-      if (!settled || !(last[m].imag() > 0.0)) continue;
-      found[mode] = last[m];
-      const bool known =
-          ((modes.lambda.col(i).head(mode).array() - last[m]).abs() < kSameMode * std::abs(last[m])).any();
-      if (!known) modes.lambda(mode, i) = last[m];
-    }
-    Growth here;
-    for (const std::complex<double> lambda : modes.lambda.col(i)) here.note(lambda);
-    note_growth(modes, i, here, sweep);
-  }
-  return modes;
-}
-
 class Search {
  public:
   Search(LinearResponse& response, TrigonometricSum& sum, const std::function<void()>& pause,
-         LinearSweep& sweep, const DampedPoles& poles)
+         LinearSweep& sweep, DampedPoles& poles)
       : response_(response),
         sum_(sum),
         pause_(pause),
@@ -186,28 +57,9 @@ class Search {
 
   void seed() {
     for (Eigen::Index m = 0; m < sweep_.modes.lambda.rows(); ++m)
-      for (std::size_t k = 0; k < sweep_.orders.size(); ++k) {
-        const double speed = has_content_[k] ? meets(m, sweep_.orders[k]) : 0.0;
-        if (!(speed > 0.0)) continue;
-        const std::complex<double> lambda = sweep_.modes.at(m, speed);
-        const double ratio = -lambda.real() / std::abs(lambda);
-        if (ratio > kTooDamped) continue;
-        SweepCritical critical;
-        critical.mode = static_cast<int>(m);
-        critical.order = sweep_.orders[k];
-        critical.speed = speed;
-        critical.frequency_Hz = to_hz(lambda.imag());
-        critical.damping_ratio = std::abs(ratio) > kUndamped ? ratio : 0.0;
-        sweep_.criticals.push_back(critical);
-        numbers_.push_back(static_cast<int>(k));
-        if (!(ratio > kUndamped)) {
-          sweep_.criticals.back().amplitude = unbounded(speed, static_cast<int>(k));
-          continue;
-        }
-        const double width = std::abs(lambda.real()) / sweep_.orders[k];
-        for (const double at : {speed - width, speed, speed + width})
-          if (at > low_ && at < high_ && !is_near(at, kSameSeed * width)) curves_.emplace(at, solved(at));
-      }
+      for (std::size_t k = 0; k < sweep_.orders.size(); ++k)
+        if (has_content_[k])
+          for (const double speed : meets(m, sweep_.orders[k])) seed(m, k, speed);
     for (const auto& [speed, point] : curves_)
       if (!std::binary_search(sweep_.speeds.begin(), sweep_.speeds.end(), speed) ||
           point.maximum.array().isInf().any())
@@ -306,6 +158,54 @@ class Search {
   }
 
  private:
+  struct Meeting {
+    double speed = 0.0;
+    std::complex<double> lambda;
+    double distance = kInfinite;  // of the order from the mode's frequency, as a part of half its width [-]
+  };
+  /// The speed near `speed`, which is of modes between the modes' speeds, at which an order is nearest to a mode's own frequency there
+  /// beside its width: damping that begins between two speeds can take the mode away from the order.
+  Meeting meeting(Eigen::Index mode, double order, double speed) {
+    constexpr int kMostSteps = 8;
+    Meeting best;
+    for (int step = 0; step < kMostSteps; ++step) {
+      if (!(speed >= low_ && speed <= high_) || sweep_.modes.at(mode, speed) == 0.0) break;
+      speed = known_or(speed);
+      const std::complex<double> lambda = pole_at(mode, speed).lambda[0];
+      const double off = std::abs(order * speed - lambda.imag());
+      const double distance = off / (std::abs(lambda.real()) + 2.0 * kSameSpeed * std::abs(lambda));
+      if (distance < best.distance) best = {speed, lambda, distance};
+      if (off <= kSameSpeed * lambda.imag()) break;
+      speed = lambda.imag() / order;
+    }
+    return best;
+  }
+  /// Enters the critical of order number k in mode m, and the speeds of its middle and its flanks.
+  void seed(Eigen::Index m, std::size_t k, double near) {
+    const auto [speed, lambda, distance] = meeting(m, sweep_.orders[k], near);
+    if (distance > 1.0) return;
+    const double ratio = -lambda.real() / std::abs(lambda);
+    if (ratio > kTooDamped) return;
+    for (const SweepCritical& other : sweep_.criticals)
+      if (other.mode == m && other.order == sweep_.orders[k] &&
+          std::abs(other.speed - speed) <= kSameSeed * std::abs(lambda.real()) / other.order)
+        return;
+    SweepCritical critical;
+    critical.mode = static_cast<int>(m);
+    critical.order = sweep_.orders[k];
+    critical.speed = speed;
+    critical.frequency_Hz = to_hz(lambda.imag());
+    critical.damping_ratio = std::abs(ratio) > kUndamped ? ratio : 0.0;
+    sweep_.criticals.push_back(critical);
+    numbers_.push_back(static_cast<int>(k));
+    if (!(ratio > kUndamped)) {
+      sweep_.criticals.back().amplitude = unbounded(speed, static_cast<int>(k));
+      return;
+    }
+    const double width = std::abs(lambda.real()) / sweep_.orders[k];
+    for (const double at : {speed - width, speed, speed + width})
+      if (at > low_ && at < high_ && !is_near(at, kSameSeed * width)) curves_.emplace(at, solved(at));
+  }
   void note_largest(const SweepPoint& point) {
     for (std::size_t c = 0; c < largest_.size(); ++c)
       if (const double here = point.half_range(static_cast<int>(c)); std::isfinite(here))
@@ -318,16 +218,30 @@ class Search {
       for (std::size_t k = 0; k < has_content_.size(); ++k)
         has_content_[k] = has_content_[k] || !section.amplitude.row(static_cast<Eigen::Index>(k)).isZero(0.0);
   }
-  /// The speed of the sweep at which an order meets the mode's frequency; 0: none.
-  double meets(Eigen::Index mode, double order) const {
-    const auto above = [&](double speed) { return order * speed - sweep_.modes.at(mode, speed).imag(); };
-    double low = (1.0 - kSameSpeed) * low_, high = (1.0 + kSameSpeed) * high_;
-    if (!(above(low) <= 0.0) || !(above(high) >= 0.0)) return 0.0;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (above(middle) < 0.0 ? low : high) = middle;
+  /// The speeds of the sweep at which an order meets the mode's frequency: between two speeds of the modes at both of which it
+  /// swings one at the most.
+  std::vector<double> meets(Eigen::Index mode, double order) const {
+    const SweepModes& modes = sweep_.modes;
+    const auto above = [&](double speed) { return order * speed - modes.at(mode, speed).imag(); };
+    std::vector<double> found;
+    for (Eigen::Index i = 0; i < std::max<Eigen::Index>(modes.speeds.size() - 1, 1); ++i) {
+      const bool constant = modes.speeds.size() == 1;
+      if (modes.lambda(mode, i) == 0.0 || (!constant && modes.lambda(mode, i + 1) == 0.0)) continue;
+      double low = (1.0 - kSameSpeed) * (constant ? low_ : modes.speeds[i]),
+             high = (1.0 + kSameSpeed) * (constant ? high_ : modes.speeds[i + 1]);
+      const bool rises = above(low) <= 0.0;
+      if (!(rises ? above(high) >= 0.0 : above(high) < 0.0)) continue;
+      for (int step = 0; step < 60; ++step) {
+        const double middle = 0.5 * (low + high);
+        ((above(middle) < 0.0) == rises ? low : high) = middle;
+      }
+      const double speed = known_or(std::clamp(0.5 * (low + high), low_, high_));
+      if (found.empty() || speed > (1.0 + kSameSpeed) * found.back()) found.push_back(speed);
     }
-    const double speed = std::clamp(0.5 * (low + high), low_, high_);
+    return found;
+  }
+  /// The speed, or that of the curves which it is but for rounding.
+  double known_or(double speed) const {
     const auto known = curves_.lower_bound((1.0 - kSameSpeed) * speed);
     return known != curves_.end() && known->first <= (1.0 + kSameSpeed) * speed ? known->first : speed;
   }
@@ -414,7 +328,8 @@ class Search {
   /// x = (o w - Im lambda) / |Re lambda| the amplitude is r / (1 + i x) + b0 + b1 x + b2 x^2, from r, the mode's residue
   /// over |Re lambda|, and values at x = -1, 0, 1.
   void find_own_parts(SweepCritical& critical, int order) {
-    const std::complex<double> lambda = sweep_.modes.at(critical.mode, critical.speed), i(0.0, 1.0);
+    const DampedPole pole = pole_at(critical.mode, critical.speed);
+    const std::complex<double> lambda = pole.lambda[0], i(0.0, 1.0);
     const double width = std::abs(lambda.real()) / critical.order;
     const auto at = [&](double x) -> Eigen::RowVectorXcd {
       pause_();
@@ -423,7 +338,8 @@ class Search {
       return point_.amplitude.row(order);
     };
     const Eigen::RowVectorXcd below = at(-1.0), above = at(1.0), here = at(0.0);
-    const Eigen::RowVectorXcd own = response_.amplitudes_of(residue(critical)) / std::abs(lambda.real()),
+    const Eigen::RowVectorXcd own = response_.amplitudes_of(poles_.pairs.residue(pole, response_.forces())) /
+                                    std::abs(lambda.real()),
                               rest = here - own, slope = 0.5 * (above - below) + 0.5 * i * own,
                               bend = 0.5 * (above + below - own) - rest;
     critical.section = most_moved(own);
@@ -440,24 +356,16 @@ class Search {
     }
   }
 
-  /// Residue of the forces last solved for at a critical's mode, linearly between the columns of the modes.
-  Eigen::VectorXcd residue(const SweepCritical& critical) const {
-    const Vector& speeds = sweep_.modes.speeds;
-    const Eigen::VectorXcd p = response_.forces();
-    if (speeds.size() == 1) return poles_.residue(0, critical.mode, p);
-    const double step = speeds[1] - speeds[0], most = static_cast<double>(speeds.size()) - 2.0;
-    const double from = std::clamp(std::floor((critical.speed - speeds[0]) / step), 0.0, most),
-                 part = (critical.speed - speeds[0]) / step - from;
-    const auto column = static_cast<std::size_t>(from);
-    return (1.0 - part) * poles_.residue(column, critical.mode, p) +
-           part * poles_.residue(column + 1, critical.mode, p);
+  /// A mode with the loads' damping at a speed.
+  DampedPole pole_at(Eigen::Index mode, double speed) {
+    return poles_.at(sweep_.modes, mode, speed, response_.damping_at(speed));
   }
 
   LinearResponse& response_;
   TrigonometricSum& sum_;
   const std::function<void()>& pause_;
   LinearSweep& sweep_;
-  const DampedPoles& poles_;
+  DampedPoles& poles_;
   double low_, high_;
   std::map<double, SweepPoint> curves_;  // of the grid and the seeds, by speed
   std::vector<double> largest_;          // largest finite half range of each section
@@ -473,22 +381,7 @@ void find_sweep_peaks(const System& system, LinearResponse& response, Trigonomet
                       const std::function<void()>& wanted_pause, LinearSweep& sweep) {
   const std::function<void()> pause = wanted_pause ? wanted_pause : [] {};
   DampedPoles poles{DampedPairs(system)};
-  try {
-    const double highest = sweep.orders.back() * sweep.speeds.back();
-    sweep.modes = system.size() > kMostUnknowns
-                      ? follow_pairs(system, response, sweep.speeds, highest, pause, sweep, poles)
-                      : follow_modes(system, response, sweep.speeds, pause, sweep, poles);
-    const Eigen::Index count = sweep.modes.lambda.rows();
-    if (system.size() > kMostUnknowns && count == kMostModes &&
-        sweep.modes.lambda.row(count - 1).imag().maxCoeff() < highest)
-      sweep.modes_note =
-          "only the lowest " + std::to_string(kMostModes) +
-          " modes are sought: a resonance above them that is narrower than the distance of the "
-          "speeds can be missed";
-  } catch (const SolverError& error) {
-    sweep.modes_note = std::string(error.what()) +
-                       ": a resonance that is narrower than the distance of the speeds can be missed";
-  }
+  find_sweep_modes(system, response, pause, sweep, poles);
   Search search(response, sum, pause, sweep, poles);
   search.seed();
   search.find_peaks();

@@ -8,15 +8,23 @@
 /// section. An order that meets an undamped mode is an infinite peak of every section that the mode moves.
 ///
 /// A critical is in the section in which the mode's own part |r| / |Re lambda| of the order's amplitude is largest, with the
-/// residue r of the amplitude at i o w = lambda from the shape of the damped mode (DampedPairs::residue()).
+/// residue r of the amplitude at i o w = lambda from the shape of the damped mode (DampedPairs::residue()) with the damping at the
+/// speed at which they meet.
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 namespace drev {
 
 class LinearResponse;
 class TrigonometricSum;
+struct DampedPoles;
 
-/// Fills sweep.modes, growth, peaks and criticals. pause: as LinearSweepOptions::pause.
+/// Finds sweep.modes and growth, and what residues at these modes take; sweep.modes_note where modes are missing. Up to 400
+/// unknowns all modes that swing, dense, at one speed or more. A mode that swings at some of the speeds only, and is overdamped
+/// at the others, is 0 at these.
+void find_sweep_modes(const System& system, LinearResponse& response, const std::function<void()>& pause,
+                      LinearSweep& sweep, DampedPoles& poles);
+
+/// Fills these, peaks and criticals. pause: as LinearSweepOptions::pause.
 void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
                       const std::function<void()>& pause, LinearSweep& sweep);
 

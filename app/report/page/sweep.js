@@ -65,10 +65,14 @@ function showFigures() {
   );
   const order = [...sweep.criticals].sort((a, b) => (b.own_amplitude ?? Infinity) - (a.own_amplitude ?? Infinity));
   byId("figures").append(make("h3", {}, "Critical speeds, largest amplitude of their own mode first"));
-  if (!order.length)
-    return byId("figures").append(
-      make("p", {}, page.criticals_note || "No order that the loads hold meets a natural frequency within the speeds."),
-    );
+  if (page.criticals_note) byId("figures").append(make("p", {}, page.criticals_note));
+  if (!order.length) {
+    if (page.campbell || !page.criticals_note)
+      byId("figures").append(
+        make("p", {}, "No order that the loads hold meets a natural frequency within the speeds."),
+      );
+    return;
+  }
   byId("figures").append(
     table(
       ["speed [rpm]", "order", "mode", "frequency [Hz]", "damping ratio", "amplitude", "of the mode", "half range", "in"],
@@ -222,14 +226,15 @@ function showDiagram() {
     section.append(make("p", {}, page.criticals_note || "There are no elastic modes."));
     return;
   }
+  // Not a number where the mode is overdamped: a gap in its line.
   const modeAt = (m, speed) => {
     const xs = c.mode_speeds_rpm,
-      ys = m.frequency_Hz;
+      ys = m.frequency_Hz.map((y) => y ?? NaN);
     let k = 0;
     while (k + 2 < xs.length && xs[k + 1] < speed) ++k;
     if (xs.length < 2) return ys[0];
     const part = Math.min(1, Math.max(0, (speed - xs[k]) / (xs[k + 1] - xs[k])));
-    return ys[k] + part * (ys[k + 1] - ys[k]);
+    return part === 0 ? ys[k] : part === 1 ? ys[k + 1] : ys[k] + part * (ys[k + 1] - ys[k]);
   };
   const met = [...new Set(sweep.criticals.map((x) => x.order))].sort((a, b) => a - b);
   const biggest = (order) =>
@@ -237,10 +242,9 @@ function showDiagram() {
   const shown = [...met].sort((a, b) => biggest(b) - biggest(a)).slice(0, 10).sort((a, b) => a - b);
   const group = new Group([0, 1.05 * whole[1]], () => {});
   const end = 1.05 * whole[1];
-  const frequencies = c.modes.map((m) => modeAt(m, whole[1]));
-  const highest = Math.max(...sweep.criticals.map((x) => x.frequency_Hz), frequencies[0]);
-  const high = 1.15 * Math.max(highest, frequencies[0]);
-  const modes = c.modes.filter((_, i) => frequencies[i] < high);
+  const frequencies = c.modes.map((m) => modeAt(m, whole[1]) || Math.max(...m.frequency_Hz));
+  const high = 1.15 * Math.max(...sweep.criticals.map((x) => x.frequency_Hz), frequencies[0]) || 1;
+  const modes = c.modes.filter((_, i) => frequencies[i] > 0 && frequencies[i] < high);
   const labels = [
     ...modes.map((m) => `mode ${m.mode}`),
     ...shown.map((o) => `order ${orderText(o)}`),
@@ -291,13 +295,15 @@ function showDiagram() {
       const text = new Labels(context, area);
       const [, x1] = g.xAxisRange(),
         [, y1] = g.yAxisRange();
-      for (const m of modes)
+      for (const m of modes) {
+        const from = m.frequency_Hz.findIndex((y) => y !== null);
         text.put(
           `${m.mode}: ${sig(modeAt(m, whole[1]), 4)} Hz`,
-          area.x + 6,
-          g.toDomYCoord(modeAt(m, 0)) - 4,
+          from > 0 ? clip(g.toDomXCoord(c.mode_speeds_rpm[from])) : area.x + 6,
+          g.toDomYCoord(m.frequency_Hz[from]) - 4,
           style("--c0"),
         );
+      }
       for (const o of shown) {
         const top = (o * x1) / 60 > y1;
         text.put(

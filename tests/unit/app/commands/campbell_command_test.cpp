@@ -50,3 +50,57 @@ TEST_CASE("A Campbell diagram takes orders without a common cycle: criticals by 
   CHECK(sweep.exit_code == 2);
   CHECK(contains(sweep.err, "no common cycle"));
 }
+
+TEST_CASE("A mode that is overdamped at some speeds is listed, with a frequency where it swings",
+          "[campbell]") {
+  // k = 1000 N m/rad, J = 1 kg m2: 63.2 N m s/rad are critical, the curve has 95 below 350 rpm, or 109 above 650 rpm.
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "disc.toml").string(), out = (folder / "out").string();
+  for (const bool first : {true, false}) {
+    std::ofstream(file)
+        << "format = 1\n[nodes]\na = { constant_speed_rpm = 200 }\nb = {}\n[elements]\n"
+           "J = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 1 }\n"
+           "s = { type = \"shaft_spring\", nodes = [\"a\", \"b\"], stiffness_Nm_per_rad = 1000 }\n"
+           "p = { type = \"torque_curve\", node = \"b\", curve = { speed_rpm = "
+        << (first ? "[0, 350, 1000], torque_Nm = [0, -3500, -3501]"
+                  : "[0, 650, 1000], torque_Nm = [0, -1, -4000]")
+        << " } }\n";
+    const auto printed =
+        drev_command({"campbell", file, "--speeds", "100:100:900", "--orders", "9", "--out", out});
+    INFO(printed.err << printed.out);
+    REQUIRE(printed.exit_code == 0);
+    CHECK(contains(printed.out, first ? "400 .. 900" : "100 .. 600"));
+    const auto object = nlohmann::json::parse(read_file(out + "/summary.json"));
+    REQUIRE(object.at("modes").size() == 1);
+    const auto &frequency = object["modes"][0]["frequency_Hz"], &ratio = object["modes"][0]["damping_ratio"];
+    CHECK(frequency[first ? 0 : 8].is_null());
+    CHECK(ratio[first ? 0 : 8].is_null());
+    CHECK(frequency[first ? 8 : 0].get<double>() == Approx(std::sqrt(1000.0) / (2.0 * std::acos(-1.0))));
+    CHECK(ratio[first ? 8 : 0].get<double>() < 1e-3);
+    CHECK(contains(read_file(out + "/modes.csv"), ",,\n"));
+  }
+}
+
+TEST_CASE("Criticals say that a coupling has another stiffness in them than in the amplitudes",
+          "[campbell]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "coupling.toml").string();
+  for (const bool follows : {true, false}) {
+    std::ofstream(file)
+        << "format = 1\n[nodes]\na = { constant_speed_rpm = 600 }\nb = {}\n[elements]\n"
+           "J = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 1 }\n"
+           "rubber = { type = \"elastic_coupling\", nodes = [\"a\", \"b\"], by_mean_torque = { "
+        << (follows ? "mean_torque_Nm = [0, 500], stiffness_Nm_per_rad = [1000, 2000], loss_factor = [0, 0]"
+                    : "mean_torque_Nm = [0], stiffness_Nm_per_rad = [1000], loss_factor = [0]")
+        << " } }\ne = { type = \"engine_order_torque\", node = \"b\", mean_Nm = 250, harmonics = { "
+           "order = [1], amplitude_Nm = [1] } }\n";
+    for (const char* command : {"campbell", "sweep"}) {
+      const auto text = drev_command({command, file, "--speeds", "100:100:900"}),
+                 json = drev_command({command, file, "--speeds", "100:100:900", "--json"});
+      INFO(text.err << text.out << json.out);
+      REQUIRE(json.exit_code == 0);
+      CHECK(contains(text.out, "stiffness of rubber at its at_mean_torque") == follows);
+      CHECK(nlohmann::json::parse(json.out).at("criticals_note").is_null() != follows);
+    }
+  }
+}

@@ -343,3 +343,31 @@ TEST_CASE("A mode's own part is its residue, whatever modes lie near", "[sweep_p
         }
       }
 }
+
+TEST_CASE("Damping that loads have at some speeds only counts for the modes and criticals there",
+          "[sweep_peaks]") {
+  // A disc of 1 kg m2 on 755 N m/rad: natural frequency 524.8 rpm at order 0.5, where only the curve between 500 and 550 rpm damps.
+  constexpr double k = 755.0, damping = 0.1;
+  Model m("disc");
+  m.add_node("a"), m.add_node("b");
+  m.constant_speed("a", rpm(525.0));
+  m.add<Inertia>("J", {"b"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = k, .damping = damping});
+  m.add<TorqueCurve>(
+      "p", {"b"},
+      {.speeds = {0.0, rpm(502.0), rpm(552.0), rpm(1200.0)}, .torques = {0.0, 0.0, -100.0, -100.0}});
+  m.add<EngineOrderTorque>("gas", {"b"}, {.harmonics = {{0.5, 1.0, 0.0}}, .twist_feedback = false});
+  const LinearSweep sweep =
+      sweep_linear(m.build(), {.speeds = rpm_speeds(100.0, 50.0, 1100.0), .orders = {0.5}});
+  const double natural = std::sqrt(k), ratio = 0.5 * (damping + 100.0 / rpm(50.0)) / natural;
+  double largest = 0.0;
+  for (const Complex lambda : sweep.modes.lambda.row(0))
+    largest = std::max(largest, -lambda.real() / std::abs(lambda));
+  CHECK(largest == Approx(ratio).epsilon(1e-9));
+  REQUIRE(sweep.criticals.size() == 1);
+  CHECK(sweep.criticals[0].damping_ratio == Approx(ratio).epsilon(1e-9));
+  CHECK(2.0 * kPi * sweep.criticals[0].frequency_Hz ==
+        Approx(natural * std::sqrt(1.0 - ratio * ratio)).epsilon(1e-9));
+  // |k + i c w| p / (2 |Re lambda| Im lambda) at the pole, not a hundred times as much.
+  CHECK(sweep.criticals[0].own_amplitude < 2.0);
+}

@@ -1,0 +1,257 @@
+#include <drev/core/error.hpp>
+#include <drev/core/law/frequency_stiffness.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
+#include <drev/solvers/modes/modes.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "solvers/periodic/damped_pairs.hpp"
+#include "solvers/periodic/linear_response.hpp"
+#include "solvers/periodic/sweep_peaks.hpp"
+
+namespace drev {
+
+namespace {
+
+constexpr int kMostUnknowns = 400;   // unknowns up to which damped modes are dense; beyond, one by one
+constexpr int kFirstModes = 16;      // number of undamped modes that are found first
+constexpr int kMostModes = 128;      // largest number of undamped modes that are found
+constexpr double kSameMode = 1e-9;   // relative difference of lambda of one and the same mode [-]
+constexpr int kModeSpeeds = 9;       // number of speeds for modes if loads depend on the speed
+constexpr int kMostModeSpeeds = 33;  // largest number with those at which their damping bends
+constexpr double kOneSpeed = 1e-10;  // relative difference of speeds that are one but for rounding [-]
+constexpr double kSameSlope =
+    1e-9;  // difference of a load's damping that is rounding, relative to the largest [-]
+constexpr double kBend = 1e-2;  // the same, off the line between two speeds, that takes one between them [-]
+
+/// For each mode of `next` the number of the mode of `last` that it continues, by shape: largest |x' y| / (|x| |y|) first,
+/// before modes that do not swing at present those that do. -1: none, it is a mode more.
+std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const std::vector<char>& swings,
+                                  const Eigen::MatrixXcd& next) {
+  struct Pair {
+    bool swings;
+    double likeness;
+    Eigen::Index from, to;
+  };
+  std::vector<Pair> pairs;
+  for (Eigen::Index i = 0; i < last.cols(); ++i)
+    for (Eigen::Index j = 0; j < next.cols(); ++j)
+      pairs.push_back({swings[static_cast<std::size_t>(i)] != 0,
+                       std::abs(last.col(i).dot(next.col(j))) / (last.col(i).norm() * next.col(j).norm()), i,
+                       j});
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
+    return a.swings != b.swings ? a.swings : a.likeness > b.likeness;
+  });
+  std::vector<Eigen::Index> from(static_cast<std::size_t>(next.cols()), -1);
+  std::vector<bool> taken(static_cast<std::size_t>(last.cols()), false);
+  for (const Pair& pair : pairs) {
+    if (from[static_cast<std::size_t>(pair.to)] >= 0 || taken[static_cast<std::size_t>(pair.from)]) continue;
+    from[static_cast<std::size_t>(pair.to)] = pair.from;
+    taken[static_cast<std::size_t>(pair.from)] = true;
+  }
+  return from;
+}
+
+/// The speeds at which the modes are found: the middle one where no load damps differently at any of the sweep's speeds; else
+/// kModeSpeeds of equal distance, and of the sweep's speeds those between which the loads' damping bends.
+Vector speeds_of_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
+  const double low = speeds.front(), high = speeds.back();
+  const Vector middle = Vector::Constant(1, 0.5 * (low + high));
+  if (!response.content().follows_speed() || speeds.size() < 2) return middle;
+  std::map<double, bool> wanted;
+  for (int i = 0; i < kModeSpeeds; ++i) wanted[low + (high - low) * i / (kModeSpeeds - 1)] = true;
+  for (const double speed : speeds) {
+    const auto near = wanted.lower_bound((1.0 - kOneSpeed) * speed);
+    if (near == wanted.end() || near->first > (1.0 + kOneSpeed) * speed) wanted[speed] = false;
+  }
+  std::vector<Finding> none;
+  OrderContent content(system, {}, none);
+  std::vector<double> at;
+  std::vector<char> taken;
+  Eigen::MatrixXd slopes(static_cast<Eigen::Index>(content.loads().size()),
+                         static_cast<Eigen::Index>(wanted.size()));
+  for (const auto& [speed, take] : wanted) {
+    Eigen::Index load = 0;
+    for (const OrderContent::Content& here : content.at(response.direction() * speed))
+      slopes(load++, static_cast<Eigen::Index>(at.size())) = here.speed_slope;
+    at.push_back(speed), taken.push_back(take);
+  }
+  const double largest = slopes.cwiseAbs().maxCoeff();
+  if (!((slopes.colwise() - slopes.col(0)).cwiseAbs().maxCoeff() > kSameSlope * largest)) return middle;
+  for (int count = kModeSpeeds; count < kMostModeSpeeds; ++count) {
+    double most = kBend * largest;
+    std::size_t bent = at.size();
+    for (std::size_t from = 0, to = 0; from + 1 < at.size(); from = to) {
+      for (to = from + 1; !taken[to];) ++to;
+      for (std::size_t i = from + 1; i < to; ++i) {
+        const double part = (at[i] - at[from]) / (at[to] - at[from]);
+        const auto column = [&](std::size_t j) { return slopes.col(static_cast<Eigen::Index>(j)); };
+        const double off =
+            (column(i) - (1.0 - part) * column(from) - part * column(to)).cwiseAbs().maxCoeff();
+        if (off > most) most = off, bent = i;
+      }
+    }
+    if (bent == at.size()) break;
+    taken[bent] = 1;
+  }
+  std::vector<double> found;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    if (taken[i]) found.push_back(at[i]);
+  return Eigen::Map<const Vector>(found.data(), static_cast<Eigen::Index>(found.size()));
+}
+
+/// Takes a growth at column number i of the modes, if it is faster.
+void note_growth(const SweepModes& modes, Eigen::Index i, const Growth& here, LinearSweep& sweep) {
+  if (!(here.rate > sweep.growth.rate)) return;
+  sweep.growth = here;
+  if (modes.speeds.size() > 1) sweep.growth_speed = modes.speeds[i];
+}
+
+/// Numbers the modes by their |lambda| at the first speed at which each swings, and gives all columns all of them.
+void number_modes(SweepModes& modes, DampedPoles& poles) {
+  const Eigen::Index count = poles.lambda.back().size();
+  std::vector<double> size(static_cast<std::size_t>(count), 0.0);
+  for (const Eigen::VectorXcd& lambda : poles.lambda)
+    for (Eigen::Index m = 0; m < lambda.size(); ++m)
+      if (double& here = size[static_cast<std::size_t>(m)]; here == 0.0) here = std::abs(lambda[m]);
+  std::vector<Eigen::Index> order(size.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return size[static_cast<std::size_t>(a)] < size[static_cast<std::size_t>(b)];
+  });
+  modes.lambda.resize(count, modes.speeds.size());
+  for (std::size_t i = 0; i < poles.lambda.size(); ++i) {
+    Eigen::VectorXcd lambda = Eigen::VectorXcd::Zero(count);
+    Eigen::MatrixXcd shapes = Eigen::MatrixXcd::Zero(poles.shapes[i].rows(), count);
+    lambda.head(poles.lambda[i].size()) = poles.lambda[i];
+    shapes.leftCols(poles.shapes[i].cols()) = poles.shapes[i];
+    poles.lambda[i] = lambda(order);
+    poles.shapes[i] = shapes(Eigen::all, order);
+    modes.lambda.col(static_cast<Eigen::Index>(i)) = poles.lambda[i];
+  }
+}
+
+SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds,
+                        const std::function<void()>& pause, LinearSweep& sweep, DampedPoles& poles) {
+  SweepModes modes;
+  modes.speeds = speeds_of_modes(system, response, speeds);
+  Eigen::MatrixXcd shapes(system.node_count(), 0);  // of each mode, where it swung last
+  std::vector<char> swings;                         // for each: it does at the last speed
+  for (Eigen::Index i = 0; i < modes.speeds.size(); ++i) {
+    pause();
+    const DampedModeSet set = solve_damped_modes(system, {.damping = load_damping(system, modes.speeds[i])});
+    note_growth(modes, i, fastest_growth(system, set), sweep);
+    std::vector<Eigen::Index> from = matched(shapes, swings, set.shapes);
+    const Eigen::Index more = std::count(from.begin(), from.end(), -1);
+    shapes.conservativeResize(Eigen::NoChange, shapes.cols() + more);
+    swings.assign(static_cast<std::size_t>(shapes.cols()), 0);
+    Eigen::Index next = shapes.cols() - more;
+    Eigen::VectorXcd& lambda = poles.lambda.emplace_back(Eigen::VectorXcd::Zero(shapes.cols()));
+    for (std::size_t m = 0; m < from.size(); ++m) {
+      const Eigen::Index mode = from[m] >= 0 ? from[m] : next++;
+      lambda[mode] = set.modes[m].lambda;
+      shapes.col(mode) = set.shapes.col(static_cast<Eigen::Index>(m));
+      swings[static_cast<std::size_t>(mode)] = 1;
+    }
+    poles.damping.push_back(poles.pairs.damping() + load_damping(system, modes.speeds[i]));
+    Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), shapes.cols());
+    for (int node = 0; node < system.node_count(); ++node)
+      if (const NodeMap& map = system.node_map(node); map.unknown >= 0)
+        of_unknowns.row(map.unknown) = shapes.row(node) / map.coeff;
+  }
+  number_modes(modes, poles);
+  return modes;
+}
+
+/// The modes of systems with many unknowns: undamped modes up to the highest frequency of an order, each
+/// iterated to its damped mode (damped_pairs.hpp). Modes that do not converge, or that converge to one
+/// already found, are 0.
+SweepModes follow_pairs(const System& system, LinearResponse& response, const std::vector<double>& speeds,
+                        double highest, const std::function<void()>& pause, LinearSweep& sweep,
+                        DampedPoles& poles) {
+  const int all = system.elastic_mode_count();
+  ModeSet undamped;
+  for (int count = std::min(all, kFirstModes);; count = std::min({all, 2 * count, kMostModes})) {
+    undamped = solve_modes(system, {.count = count});
+    if (count == std::min(all, kMostModes) || undamped.omega(count - 1) > highest) break;
+  }
+  DampedPairs& pairs = poles.pairs;
+  SweepModes modes;
+  modes.speeds = speeds_of_modes(system, response, speeds);
+  modes.lambda.setZero(undamped.count(), modes.speeds.size());
+  std::vector<Eigen::VectorXcd> shapes;
+  std::vector<std::complex<double>> last;
+  for (int m = 0; m < undamped.count(); ++m) {
+    shapes.emplace_back(undamped.vectors.col(m).cast<std::complex<double>>());
+    last.emplace_back(0.0, undamped.omega(m));
+  }
+  for (Eigen::Index i = 0; i < modes.speeds.size(); ++i) {
+    const Vector damping = pairs.damping() + load_damping(system, modes.speeds[i]);
+    poles.damping.push_back(damping);
+    Eigen::VectorXcd& found = poles.lambda.emplace_back(Eigen::VectorXcd::Zero(undamped.count()));
+    Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), undamped.count());
+    for (std::size_t m = 0; m < shapes.size(); ++m) {
+      const auto mode = static_cast<Eigen::Index>(m);
+      pause();
+      std::complex<double> lambda = last[m];
+      Eigen::VectorXcd shape = shapes[m];
+      const bool settled = pairs.refine(damping, lambda, shape);
+      of_unknowns.col(mode) = shape;
+      // What it does not swing as is no guess for the next speed.
+      if (!settled || !(lambda.imag() > 0.0)) continue;
+      found[mode] = last[m] = lambda, shapes[m] = shape;
+      const bool known =
+          ((modes.lambda.col(i).head(mode).array() - lambda).abs() < kSameMode * std::abs(lambda)).any();
+      if (!known) modes.lambda(mode, i) = lambda;
+    }
+    Growth here;
+    for (const std::complex<double> lambda : modes.lambda.col(i)) here.note(lambda);
+    note_growth(modes, i, here, sweep);
+  }
+  return modes;
+}
+
+/// Which elements have another stiffness in the amplitudes of the sweep than in its modes; empty: none.
+std::string fixed_stiffness_note(const System& system) {
+  std::vector<std::string> names;
+  for (const FrequencyTerm& term : system.frequency_terms())
+    if (term.stiffness->follows_mean_torque() || term.stiffness->amplitudes().size() > 1)
+      names.push_back(system.element_instances()[idx(index(term.element))].name);
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    list += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
+  return names.empty() ? ""
+                       : "modes, and where orders meet them, have the stiffness of " + list +
+                             " at its at_mean_torque and at_amplitude; amplitudes and peaks have that under "
+                             "the mean torque and amplitude at each speed, and the peaks say where the "
+                             "vibration is largest";
+}
+
+}  // namespace
+
+void find_sweep_modes(const System& system, LinearResponse& response, const std::function<void()>& pause,
+                      LinearSweep& sweep, DampedPoles& poles) {
+  try {
+    const double highest = sweep.orders.back() * sweep.speeds.back();
+    sweep.modes = system.size() > kMostUnknowns
+                      ? follow_pairs(system, response, sweep.speeds, highest, pause, sweep, poles)
+                      : follow_modes(system, response, sweep.speeds, pause, sweep, poles);
+    const Eigen::Index count = sweep.modes.lambda.rows();
+    if (system.size() > kMostUnknowns && count == kMostModes &&
+        sweep.modes.lambda.row(count - 1).imag().maxCoeff() < highest)
+      sweep.modes_note =
+          "only the lowest " + std::to_string(kMostModes) +
+          " modes are sought: a resonance above them that is narrower than the distance of the "
+          "speeds can be missed";
+  } catch (const SolverError& error) {
+    sweep.modes_note = std::string(error.what()) +
+                       ": a resonance that is narrower than the distance of the speeds can be missed";
+  }
+  if (const std::string fixed = fixed_stiffness_note(system); !fixed.empty())
+    sweep.modes_note += (sweep.modes_note.empty() ? "" : "; ") + fixed;
+}
+
+}  // namespace drev
