@@ -26,12 +26,13 @@ const char* to_text(BranchChange change) {
   return "";
 }
 
-double cycle_turns(const System& system) {
+double cycle_turns(const System& system, const std::vector<double>& speeds) {
   constexpr int kMostTurns = 20, kProbes = 4096, kLargestPrime = 499;
   constexpr double kSame = 1e-8, kGolden = 0.6180339887498949, kFewestTurns = 1e-4, kLongestTurns = 100.0;
-  const double w = system.reference_speed() > 0.0 ? system.reference_speed() : 1.0;
-  // All that acts, of the angle of the reference shaft, where nothing deviates.
-  std::vector<std::function<double(double)>> acts;
+  const double nominal = system.reference_speed() > 0.0 ? system.reference_speed() : 1.0;
+  // All that acts, of angle and speed of the reference shaft, where nothing deviates.
+  using Act = std::function<double(double phi, double w)>;
+  std::vector<Act> acts;
   std::vector<double> shafts{1.0};  // turns of the reference shaft in one of theirs
   const auto add_shaft = [&shafts](double ratio) {
     if (ratio != 0.0 && std::abs(ratio) != 1.0) shafts.push_back(1.0 / std::abs(ratio));
@@ -42,7 +43,7 @@ double cycle_turns(const System& system) {
     const double edge = gap ? gap->high : 0.0, x = edge > 0.0 ? 2.0 * edge : 1e-4;
     const double ratio = system.ratio(law.phase_node);
     add_shaft(ratio);
-    acts.emplace_back([&law, x, ratio, w](double phi) {
+    acts.emplace_back([&law, x, ratio](double phi, double w) {
       return law.force
           ->evaluate({.x = x - law.force->offset(ratio * phi).e, .t = phi / w, .angle = ratio * phi})
           .y;
@@ -51,7 +52,7 @@ double cycle_turns(const System& system) {
   for (const LoadTerm& load : system.loads()) {
     const double ratio = system.ratio(load.node);
     add_shaft(ratio);
-    acts.emplace_back([&load, ratio, w](double phi) {
+    acts.emplace_back([&load, ratio](double phi, double w) {
       return load.load
           ->evaluate(
               {.t = phi / w, .nominal_angle = ratio * phi, .speed = ratio * w, .nominal_speed = ratio * w})
@@ -63,22 +64,26 @@ double cycle_turns(const System& system) {
     const double part = kGolden * i;
     return kMostTurns * kTwoPi * (part - std::floor(part));
   };
-  const auto repeats = [&](const std::function<double(double)>& f, double turns) {
+  const auto speed = [&](int i) { return speeds.empty() ? nominal : speeds[idx(i) % speeds.size()]; };
+  const auto repeats = [&](const Act& f, double turns) {
     double largest = 0.0;
-    for (int i = 0; i < kProbes / 16; ++i) largest = std::max(largest, std::abs(f(probe(i))));
+    for (int i = 0; i < kProbes / 16; ++i) largest = std::max(largest, std::abs(f(probe(i), speed(i))));
     for (int i = 0; i < kProbes; ++i)
-      if (std::abs(f(probe(i) + turns * kTwoPi) - f(probe(i))) > kSame * largest) return false;
+      if (std::abs(f(probe(i) + turns * kTwoPi, speed(i)) - f(probe(i), speed(i))) > kSame * largest)
+        return false;
     return true;
   };
   // What is the same everywhere has no cycle.
-  std::erase_if(acts, [&](const auto& f) {
-    for (int i = 1; i < kProbes; ++i)
-      if (std::abs(f(probe(i)) - f(probe(0))) > kSame * std::abs(f(probe(0)))) return false;
+  std::erase_if(acts, [&](const Act& f) {
+    for (int i = 1; i < kProbes; ++i) {
+      const double first = f(probe(0), speed(i));
+      if (std::abs(f(probe(i), speed(i)) - first) > kSame * std::abs(first)) return false;
+    }
     return true;
   });
   if (acts.empty()) return 1.0;
   const auto all = [&](double turns) {
-    return std::all_of(acts.begin(), acts.end(), [&](const auto& f) { return repeats(f, turns); });
+    return std::all_of(acts.begin(), acts.end(), [&](const Act& f) { return repeats(f, turns); });
   };
   // Whole turns of the reference shaft; then of each shaft on which something acts.
   double turns = 0.0;

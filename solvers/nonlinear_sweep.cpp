@@ -58,7 +58,7 @@ Sweeper::Sweeper(const System& system, const NonlinearSweepOptions& options)
                         "constant_speed)"});
   sections_ = std::make_unique<MotionSections>(find_section_rows(system, options.sections, findings));
   if (!findings.empty()) throw ModelError(std::move(findings));
-  sweep_.turns = options.turns > 0.0 ? options.turns : cycle_turns(system);
+  sweep_.turns = options.turns > 0.0 ? options.turns : cycle_turns(system, options.speeds);
   LawBalance balance(system, sweep_.turns > 0.0 ? sweep_.turns : 1.0, options.balance, findings);
   if (sweep_.turns == 0.0 && findings.empty())
     check.fail("turns", "0", "",

@@ -141,8 +141,9 @@ struct NonlinearSweep {
 NonlinearSweep sweep_nonlinear(const System& system, const NonlinearSweepOptions& options);
 
 /// The fewest turns of the reference shaft in which all laws and loads repeat: up to 20 whole turns of it, or of a shaft
-/// on which something acts, or a part of them; at most 100. 0: none.
-double cycle_turns(const System& system);
+/// on which something acts, or a part of them; at most 100. 0: none. speeds: of it, at which loads are looked at [rad/s], > 0; empty:
+/// at the nominal one.
+double cycle_turns(const System& system, const std::vector<double>& speeds = {});
 
 /// What a sweep of a model that is not linear comes to at each speed, in the form in which it is judged
 /// (strength/class_judgement.hpp) and drawn: the worst that the train may do there.

@@ -137,8 +137,8 @@ struct LinearSweep {
   std::vector<SweepPoint> points;
   std::vector<SweepCritical> criticals;  ///< critical speeds, ascending
   SweepModes modes;                      ///< modes, if options.refine is set
-  std::string
-      modes_note;  ///< what modes and criticals lack, or why they are missing, although options.refine is set
+  /// What modes and criticals lack, or why they are missing, although options.refine is set.
+  std::string modes_note;
   /// Of these modes, and of real lambda up to 400 unknowns, the one that grows fastest: with a rate > 0 the steady vibration is a
   /// solution of the equations that the train leaves.
   Growth growth;

@@ -3,6 +3,7 @@
 // solvers/linear/lane_elimination.hpp through sweep_linear(); and loads that only some of the speeds have (order_content.hpp).
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
+#include <drev/solvers/nonlinear_sweep.hpp>
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
 #include <cmath>
@@ -129,8 +130,7 @@ TEST_CASE("Sums of orders have the same extremes alone and beside others", "[lin
 namespace {
 
 /// J = 1 kg m^2 on a shaft of 1000 N m/rad and 0.1 N m s/rad behind a clock, with a torque between these speeds of its disc.
-LinearSweep gated(double nominal_rpm, std::vector<double> speeds,
-                  std::function<Dual(const TorqueVariables&)> torque, double from_rpm) {
+System gated(double nominal_rpm, std::function<Dual(const TorqueVariables&)> torque, double from_rpm) {
   Model m("gated");
   m.add_node("clock");
   m.add_node("disc");
@@ -141,7 +141,7 @@ LinearSweep gated(double nominal_rpm, std::vector<double> speeds,
       "load", {"disc"},
       {.torque = std::move(torque),
        .gate = {.from_speed = rpm(from_rpm), .to_speed = rpm(5000.0), .speed_ramp = rpm(100.0)}});
-  return sweep_linear(m.build(), {.speeds = std::move(speeds), .orders = {2.0}, .refine = false});
+  return m.build();
 }
 
 }  // namespace
@@ -151,8 +151,12 @@ TEST_CASE("What a load depends on is found at the speeds of the sweep, whatever 
   const std::vector<double> speeds{rpm(300.0), rpm(1400.0), rpm(2500.0)};
   for (const double nominal : {600.0, 1200.0}) {
     CAPTURE(nominal);
-    const LinearSweep wave = gated(
-        nominal, speeds, [](const TorqueVariables& x) { return 100.0 * cos(2.0 * x.angle); }, 900.0);
+    const auto swept = [&](std::function<Dual(const TorqueVariables&)> torque, double from_rpm) {
+      return sweep_linear(gated(nominal, std::move(torque), from_rpm),
+                          {.speeds = speeds, .orders = {2.0}, .refine = false});
+    };
+    const LinearSweep wave =
+        swept([](const TorqueVariables& x) { return 100.0 * cos(2.0 * x.angle); }, 900.0);
     CHECK(wave.sections[0].half_range()[0] == 0.0);
     CHECK(wave.sections[0].mean.isZero(0.0));
     for (const Eigen::Index i : {1, 2}) {
@@ -161,14 +165,15 @@ TEST_CASE("What a load depends on is found at the speeds of the sweep, whatever 
       CHECK(wave.sections[0].half_range()[i] ==
             Approx(100.0 * std::abs(shaft / (shaft - w * w))).epsilon(1e-9));
     }
-    const LinearSweep constant = gated(
-        nominal, speeds, [](const TorqueVariables&) { return Dual(-100.0); }, 2000.0);
+    const LinearSweep constant = swept([](const TorqueVariables&) { return Dual(-100.0); }, 2000.0);
     CHECK(constant.sections[0].mean[0] == 0.0);
     CHECK(constant.sections[0].mean[1] == 0.0);
     CHECK(std::abs(constant.sections[0].mean[2]) == Approx(100.0).epsilon(1e-12));
-    CHECK_THROWS_AS(
-        gated(
-            nominal, speeds, [](const TorqueVariables& x) { return Dual(std::sin(50.0 * x.t)); }, 900.0),
-        ModelError);
+    CHECK_THROWS_AS(swept([](const TorqueVariables& x) { return Dual(std::sin(50.0 * x.t)); }, 900.0),
+                    ModelError);
   }
+  // So is the cycle of a sweep with contacts.
+  const System half = gated(
+      600.0, [](const TorqueVariables& x) { return 100.0 * cos(0.5 * x.angle); }, 900.0);
+  CHECK(cycle_turns(half, speeds) == 2.0);
 }
