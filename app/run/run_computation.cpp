@@ -209,8 +209,11 @@ std::vector<SectionPeaks> sections_of(const RunRequest& request, const System& s
     sections.push_back({channel.name(), channel.unit(), whole.peaks()[c], settled.peaks()[c]});
     for (const SectionStrength& s : strength.sections)
       if (channel.name() == s.element + ".torque_Nm")
-        sections.back().permissible =
-            torque_limit(s, std::abs(system.reference_speed()) / strength.rated_speed).continuous;
+        for (const double t : {settled.peaks()[c].max_time, settled.peaks()[c].min_time}) {
+          const double speed = system.reference() ? system.reference()->at(t).rate : 0.0;
+          double& least = sections.back().permissible;
+          least = std::fmin(least, torque_limit(s, std::abs(speed) / strength.rated_speed).continuous);
+        }
   }
   return sections;
 }

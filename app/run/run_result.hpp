@@ -44,7 +44,8 @@ struct SectionPeaks {
   std::string channel, unit;
   Peak whole;    ///< of the whole run
   Peak settled;  ///< of the span that figures are of
-  /// Permissible half range in continuous running at the nominal speed, where the model says so; not a number: none.
+  /// Permissible half range in continuous running, the lower one at the nominal speeds of the span's maximum and minimum, where
+  /// the model says so; not a number: none.
   double permissible = SectionStrength::kNone;
   double half_range() const { return 0.5 * (settled.max - settled.min); }
 };

@@ -172,6 +172,8 @@ class PythonLaw final : public Element, public ScalarForce {
             .stored_energy = f.has_energy() ? f.energy(in.x) : 0.0,
             .dissipated_power = (y.force - at_rest) * in.x_dot};
   }
+  // An energy that is given is one of x alone. Of no energy there is nothing to compare, and the law is not called for it.
+  bool varies() const override { return callable_ == nullptr || !callable_->has_energy(); }
 
  private:
   int number_;
