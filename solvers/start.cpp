@@ -68,13 +68,14 @@ double constant_speed_of(const System& system, double duration) {
   return std::abs(speed);
 }
 
-/// Cycles to try, at this speed of the reference shaft [rad/s; 0: none turns]: of turns, of what acts in time, and of both [s].
-std::vector<double> cycles_of(const System& system, double speed) {
-  std::vector<double> cycles, turns;
+/// Cycles to try, at this speed of the reference shaft [rad/s; 0: none turns]: of so many turns of it, of what acts in time, and of
+/// both [s].
+std::vector<double> cycles_of(const System& system, double speed, const std::vector<double>& turns_of_it) {
+  std::vector<double> turns;
   if (speed > 0.0)
-    for (const double n : {1.0, 2.0, 4.0, cycle_turns(system)})
+    for (const double n : turns_of_it)
       if (n > 0.0) turns.push_back(n * kTwoPi / speed);
-  cycles = turns;
+  std::vector<double> cycles = turns;
   std::vector<double> frequencies = frequencies_of(system);
   if (const double shared = shared_frequency(frequencies); shared > 0.0) cycles.push_back(1.0 / shared);
   if (frequencies.empty()) return cycles;
@@ -108,11 +109,17 @@ bool repeats(const System& system, double cycle) {
 /// or what the loads and given motions share; 0: there is none.
 double mean_cycle_of(const System& system) {
   const auto& reference = system.reference();
-  const std::vector<double> cycles =
-      cycles_of(system, reference && reference->at ? std::abs(reference->at(0.0).rate) : 0.0);
-  for (const double cycle : cycles)
-    if (repeats(system, cycle)) return cycle;
-  return cycles.empty() ? 0.0 : cycles.front();
+  const double speed = reference && reference->at ? std::abs(reference->at(0.0).rate) : 0.0;
+  const auto first_of = [&](const std::vector<double>& cycles) {
+    const auto found =
+        std::find_if(cycles.begin(), cycles.end(), [&](double cycle) { return repeats(system, cycle); });
+    return found == cycles.end() ? 0.0 : *found;
+  };
+  const std::vector<double> few = cycles_of(system, speed, {1.0, 2.0, 4.0});
+  double cycle = first_of(few);
+  // The search for the turns of all shafts calls every load thousands of times.
+  if (cycle == 0.0 && speed > 0.0) cycle = first_of(cycles_of(system, speed, {cycle_turns(system)}));
+  return cycle > 0.0 || few.empty() ? cycle : few.front();
 }
 
 FoundStart start_static(const System& system, const StartOptions& options) {
@@ -188,7 +195,8 @@ Growth growth_beside(const System& system, double speed) {
 }
 
 FoundStart start_periodic(const System& system, const StartOptions& options) {
-  std::vector<double> cycles = cycles_of(system, constant_speed_of(system, options.duration));
+  std::vector<double> cycles =
+      cycles_of(system, constant_speed_of(system, options.duration), {1.0, 2.0, 4.0, cycle_turns(system)});
   if (options.cycle > 0.0) cycles.insert(cycles.begin(), options.cycle);
   std::string reason =
       cycles.empty()

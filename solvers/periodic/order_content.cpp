@@ -143,7 +143,7 @@ bool OrderContent::changes(std::size_t load, double speed, std::vector<Finding>&
   if (source.scaled) {
     if (source.relative >= 0) return !source.known || sources_[idx(source.relative)].changed;
     std::vector<double> factors = source.scaled->speed_factors(system_.ratio(term.node) * speed);
-    const bool changes = factors != source.factors;
+    const bool changes = !source.known || factors != source.factors;
     source.factors = std::move(factors);
     return changes;
   }
@@ -153,7 +153,7 @@ bool OrderContent::changes(std::size_t load, double speed, std::vector<Finding>&
     const LoadResponse r = at_angle(term, probe_angle(i), system_.ratio(term.node) * speed, 0.173 * i);
     probes.insert(probes.end(), {r.torque, r.dtorque_dangle, r.dtorque_dspeed});
   }
-  if (probes == source.probes) return false;
+  if (source.known && probes == source.probes) return false;
   Source here;
   if (!inspect(term, speed, here, findings)) return false;
   if (here.turns == source.turns) here.samples = source.samples;
@@ -339,6 +339,7 @@ const std::vector<OrderContent::Content>& OrderContent::at(double speed) {
     }
   }
   if (!findings.empty()) {
+    for (Source& source : sources_) source.known = false;
     for (Finding& finding : findings)
       finding.place += ", at " + rounded_text(to_rpm(std::abs(speed)), 9) + " rpm";
     throw ModelError(std::move(findings));
