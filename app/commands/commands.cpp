@@ -22,6 +22,8 @@ const std::vector<CommandEntry>& commands() {
   static const OptionEntry sections{
       "--record", "CHANNEL,...",
       "Sections, * for any characters; default: every torque and force of an element", commas};
+  static const OptionEntry balance{"--balance", "NODE",
+                                   "Node that takes up the mean torque that is left over; default: none"};
   static const OptionEntry cycle{"--cycle", "TURNS",
                                  "Turns of the reference shaft in which everything repeats, for a model "
                                  "with contacts; default: found"};
@@ -121,8 +123,7 @@ const std::vector<CommandEntry>& commands() {
                    orders,
                    linear,
                    sections,
-                   {"--balance", "NODE",
-                    "Node that takes up the mean torque that is left over; default: none"},
+                   balance,
                    {"--absolute-sum", "", "Adds the sums of the orders' amplitudes without their phases",
                     none},
                    cycle,
@@ -142,6 +143,7 @@ const std::vector<CommandEntry>& commands() {
                    orders,
                    linear,
                    sections,
+                   balance,
                    {"--out", "DIR", "Creates DIR with modes.csv, criticals.csv and summary.json"},
                    sweep_report,
                    run,
@@ -154,8 +156,7 @@ const std::vector<CommandEntry>& commands() {
        .options = {speeds,
                    orders,
                    linear,
-                   {"--balance", "NODE",
-                    "Node that takes up the mean torque that is left over; default: none"},
+                   balance,
                    cycle,
                    motion_tolerance,
                    run_threads,

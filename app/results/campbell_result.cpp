@@ -62,6 +62,15 @@ std::string speeds_text(const Vector& speeds, const std::vector<double>& frequen
   return text;
 }
 
+/// What modes and criticals lack, and what their stiffness rests on; empty: nothing.
+std::string criticals_note(const SweepRequest& request, const LinearSweep& sweep) {
+  std::string text = sweep.modes_note;
+  if (!follows_mean_torque(request)) return text;
+  for (const std::string& note : left_over_notes(request, sweep))
+    text += (text.empty() ? "" : text.back() == '.' ? " " : ". ") + note;
+  return text;
+}
+
 std::string csv_value(double value) { return std::isnan(value) ? "" : to_text(value); }
 
 }  // namespace
@@ -84,7 +93,8 @@ std::string campbell_as_text(const SweepRequest& request, const LinearSweep& swe
     if (some_stop) modes.back().push_back(speeds_text(sweep.modes.speeds, frequencies));
   }
   text += columns_text(modes) + "\n";
-  if (!sweep.modes_note.empty()) text += wrap("Criticals: " + sweep.modes_note, 0) + "\n";
+  if (const std::string note = criticals_note(request, sweep); !note.empty())
+    text += wrap("Criticals: " + note, 0) + "\n";
   if (sweep.criticals.empty())
     return text + "No order that the loads hold meets a natural frequency within the speeds.\n";
   std::vector<std::vector<std::string>> rows{{"critical [rpm]", "order", "mode", "at [Hz]", "damping ratio",
@@ -126,7 +136,8 @@ Json campbell_object(const SweepRequest& request, const LinearSweep& sweep) {
   object["mode_speeds_rpm"] = std::move(speeds);
   object["modes"] = std::move(modes);
   object["criticals"] = std::move(criticals);
-  object["criticals_note"] = text_or_null(sweep.modes_note);
+  object["criticals_note"] = text_or_null(criticals_note(request, sweep));
+  object["balance"] = text_or_null(request.options.balance);
   object["note"] = text_or_null(request.model.model_case.note);
   return object;
 }

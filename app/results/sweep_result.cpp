@@ -1,5 +1,6 @@
 #include "app/results/sweep_result.hpp"
 
+#include <drev/core/law/frequency_stiffness.hpp>
 #include <drev/core/units.hpp>
 
 #include <algorithm>
@@ -181,6 +182,32 @@ std::vector<double> several_amplitudes(const SweepRequest& request, const Linear
 
 }  // namespace
 
+bool follows_mean_torque(const SweepRequest& request) {
+  const auto& terms = request.model.system.frequency_terms();
+  return std::any_of(terms.begin(), terms.end(),
+                     [](const FrequencyTerm& term) { return term.stiffness->follows_mean_torque(); });
+}
+
+std::vector<std::string> left_over_notes(const SweepRequest& request, const LinearSweep& sweep) {
+  std::vector<std::string> notes;
+  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f) {
+    LeftOver left{.of = sweep.unbalanced_scale[f]};
+    for (std::size_t i = 0; i < request.speeds_rpm.size(); ++i)
+      left.note(sweep.unbalanced[f][static_cast<Eigen::Index>(i)], request.speeds_rpm[i],
+                kBalanced * left.of);
+    if (left.count > 0)
+      notes.push_back(left_over_sentence(
+          left, sweep.floating_parts[f],
+          std::string("Means are those of the train that this speeds up; --balance NODE takes it up at a "
+                      "node. ") +
+              (follows_mean_torque(request) ? "Couplings whose stiffness follows the mean torque have that "
+                                              "under these means."
+                                            : "Vibration does not depend on it."),
+          request.options.balance));
+  }
+  return notes;
+}
+
 std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSweep& sweep) {
   std::vector<std::string> notes;
   if (sweep.growth.rate > 0.0)
@@ -189,18 +216,7 @@ std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSw
                          ? ""
                          : ", fastest at about " + digits(to_rpm(sweep.growth_speed), 4) + " rpm") +
                     ". The steady vibration stated solves the equations, but no run settles on it.");
-  for (std::size_t f = 0; f < sweep.floating_parts.size(); ++f) {
-    LeftOver left{.of = sweep.unbalanced_scale[f]};
-    for (std::size_t i = 0; i < request.speeds_rpm.size(); ++i)
-      left.note(sweep.unbalanced[f][static_cast<Eigen::Index>(i)], request.speeds_rpm[i],
-                kBalanced * left.of);
-    if (left.count > 0)
-      notes.push_back(
-          left_over_sentence(left, sweep.floating_parts[f],
-                             "Means are those of the train that this speeds up; --balance NODE takes it "
-                             "up at a node. Vibration does not depend on it.",
-                             request.options.balance));
-  }
+  for (std::string& note : left_over_notes(request, sweep)) notes.push_back(std::move(note));
   if (const std::vector<double> speeds = several_amplitudes(request, sweep); !speeds.empty())
     notes.push_back("At " + std::to_string(speeds.size()) + " of " + std::to_string(sweep.speeds.size()) +
                     " speeds, from " + digits(speeds.front(), kDigits) + " to " +

@@ -28,6 +28,10 @@ struct LeftOver {
 /// The sentence on the unbalanced torque; moving: what the figures describe if `balance` names no node.
 std::string left_over_sentence(const LeftOver& left, const std::string& part, const std::string& moving,
                                const std::string& balance);
+/// Whether a coupling has a stiffness that follows the mean torque: modes and vibration then depend on it.
+bool follows_mean_torque(const SweepRequest& request);
+/// Sentences on the unbalanced mean torque of floating parts.
+std::vector<std::string> left_over_notes(const SweepRequest& request, const LinearSweep& sweep);
 /// Sentences that a reader must know: unbalanced mean torque, orders left out, contacts that open.
 std::vector<std::string> sweep_notes(const SweepRequest& request, const LinearSweep& sweep);
 std::string sweep_as_text(const SweepRequest& request, const LinearSweep& sweep);

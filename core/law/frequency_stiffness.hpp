@@ -29,6 +29,8 @@ class FrequencyStiffness {
   /// Whether beyond_held() does, at the load it is asked for.
   virtual bool follows_frequency() const { return true; }
   virtual bool follows_mean_torque() const { return false; }
+  /// The load under which the element's own matrices are.
+  virtual CarriedLoad load_in_matrices() const { return {}; }
   /// Amplitudes between which it follows them smoothly, ascending [rad]: it is constant outside. Empty: it does not follow any.
   virtual std::vector<double> amplitudes() const { return {}; }
   /// Of its own matrices: mean torque over mean deflection [N m/rad].

@@ -32,16 +32,16 @@ Eigen::VectorXcd pair_product(const SparseMatrix& pattern, const Vector& values,
 }  // namespace
 
 DampedPairs::DampedPairs(const System& system) : pattern_(system.pattern()), elimination_(system.pattern()) {
-  const Assembler assembler(system);
-  assembler.contact_values({1.0, 0.0, 0.0}, Contact::closed, mass_);
-  assembler.contact_values({0.0, 1.0, 0.0}, Contact::closed, damping_);
-  assembler.contact_values({0.0, 0.0, 1.0}, Contact::closed, stiffness_);
+  Assembler(system).contact_values({1.0, 0.0, 0.0}, Contact::closed, mass_);
 }
 
-bool DampedPairs::refine(const Vector& damping, Complex& lambda, Eigen::VectorXcd& shape) {
+bool DampedPairs::refine(const std::function<ModeMatrices(double)>& matrices, Complex& lambda,
+                         Eigen::VectorXcd& shape) {
   Complex at = lambda;  // value of s at which S is factored, moved off an exact eigenvalue
   for (int step = 0; step < kMostSteps; ++step) {
-    if (!elimination_.factorize(mass_, damping, stiffness_, at)) {
+    if (!(lambda.imag() > 0.0)) return false;
+    const auto [damping, stiffness] = matrices(lambda.imag());
+    if (!elimination_.factorize(mass_, damping, stiffness, at)) {
       if (at != lambda) return false;
       at = lambda * (1.0 + 1e-9);
       continue;
@@ -54,14 +54,14 @@ bool DampedPairs::refine(const Vector& damping, Complex& lambda, Eigen::VectorXc
     const auto form = [&](const Vector& values) -> Complex {
       return (shape.transpose() * pair_product(pattern_, values, shape))(0, 0);
     };
-    const Complex a = form(mass_), c = form(damping), k = form(stiffness_);
+    const Complex a = form(mass_), c = form(damping), k = form(stiffness);
     const Complex root = std::sqrt(c * c - 4.0 * a * k);
     const Complex one = (-c + root) / (2.0 * a), other = (-c - root) / (2.0 * a);
     const Complex found = std::abs(one - lambda) < std::abs(other - lambda) ? one : other;
     const double moved = std::abs(found - lambda);
     at = lambda = found;
     if (!std::isfinite(moved)) return false;
-    if (moved <= kPairSettled * std::abs(lambda)) return true;
+    if (moved <= kPairSettled * std::abs(lambda)) return lambda.imag() > 0.0;
   }
   return false;
 }
@@ -87,8 +87,7 @@ Eigen::VectorXcd DampedPairs::residue(const DampedPole& pole, const Eigen::Vecto
   return x * (y.head(k) + Complex(0.0, 1.0) * y.tail(k));
 }
 
-DampedPole DampedPoles::at(const SweepModes& modes, Eigen::Index mode, double speed,
-                           const Vector& damping_here) {
+DampedPole DampedPoles::at(const SweepModes& modes, Eigen::Index mode, double speed) {
   Eigen::Index nearest = 0;
   (modes.speeds.array() - speed).abs().minCoeff(&nearest);
   const auto column = static_cast<std::size_t>(nearest);
@@ -97,15 +96,16 @@ DampedPole DampedPoles::at(const SweepModes& modes, Eigen::Index mode, double sp
   std::vector<Eigen::Index> same{mode};
   for (Eigen::Index j = 0; j < all.size(); ++j)
     if (j != mode && coincides(all[j], all[mode])) same.push_back(j);
-  DampedPole pole{damping[column], all(same), shapes[column](Eigen::all, same)};
+  DampedPole pole{matrices(modes.speeds[nearest], all[mode].imag()).damping, all(same),
+                  shapes[column](Eigen::all, same)};
   if (modes.speeds.size() == 1) return pole;
   const Complex guess = modes.at(mode, speed);
-  DampedPole here{damping_here, pole.lambda, pole.shapes};
+  DampedPole here{{}, pole.lambda, pole.shapes};
   Eigen::Index count = 0;
   for (Eigen::Index j = 0; j < pole.lambda.size(); ++j) {
     Complex found = guess;
     Eigen::VectorXcd shape = pole.shapes.col(j);
-    bool good = pairs.refine(damping_here, found, shape) && found.imag() > 0.0;
+    bool good = pairs.refine([&](double omega) { return matrices(speed, omega); }, found, shape);
     for (Eigen::Index k = 0; k < all.size() && j == 0; ++k)
       good &=
           all[k] == 0.0 || coincides(all[k], all[mode]) || std::abs(found - all[k]) > std::abs(found - guess);
@@ -117,6 +117,7 @@ DampedPole DampedPoles::at(const SweepModes& modes, Eigen::Index mode, double sp
     here.lambda[count] = found;
     here.shapes.col(count++) = shape;
   }
+  here.damping = matrices(speed, here.lambda[0].imag()).damping;
   here.lambda.conservativeResize(count);
   here.shapes.conservativeResize(Eigen::NoChange, count);
   return here;

@@ -330,19 +330,48 @@ double LinearResponse::amplitude_of(std::size_t t, double speed) {
   return std::sqrt(twist_squares_[t]);
 }
 
+void LinearResponse::find_mean_torques(double speed) {
+  if (!follows_mean_) return;
+  const std::vector<FrequencyTerm>& terms = system_.frequency_terms();
+  Vector unbalanced, sums;
+  const std::vector<double> z = mean_motion(speed, load_means(speed), unbalanced, sums);
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    carried_[t].mean_torque =
+        (terms[t].stiffness->static_stiffness() + terms[t].stiffness->static_beyond_matrices()) *
+        product(terms[t].z, z);
+}
+
+Complex LinearResponse::mode_stiffness(std::size_t term, double speed, double omega) {
+  const FrequencyStiffness& stiffness = *system_.frequency_terms()[term].stiffness;
+  CarriedLoad load = stiffness.load_in_matrices();
+  if (stiffness.follows_mean_torque()) {
+    find_mean_torques(speed);
+    load.mean_torque = carried_[term].mean_torque;
+  }
+  return stiffness.beyond_matrices(omega, load);
+}
+
+ModeMatrices LinearResponse::mode_matrices(double speed, double omega, double part) {
+  const Vector& damping = damping_at(speed);
+  if (slots_.empty()) return {damping, stiffness_};
+  mode_damping_ = damping;
+  mode_stiffness_ = stiffness_;
+  Complex k = 0.0;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (i == 0 || slot_terms_[i] != slot_terms_[i - 1])
+      k = part * mode_stiffness(idx(slot_terms_[i]), speed, omega);
+    mode_stiffness_[slots_[i]] += k.real() * slot_times_[i];
+    mode_damping_[slots_[i]] += k.imag() / omega * slot_times_[i];
+  }
+  return {mode_damping_, mode_stiffness_};
+}
+
 void LinearResponse::find_carried_loads(double speed) {
   constexpr double kClose = 1e-12;  // relative tolerance of amplitudes [-]
   constexpr int kMostRounds = 100, kMostSteps = 200;
   constexpr int kParts = 16;  // of the distance of two amplitudes of a table, each with one solution at most
   const std::vector<FrequencyTerm>& terms = system_.frequency_terms();
-  if (follows_mean_) {
-    Vector unbalanced, sums;
-    const std::vector<double> z = mean_motion(speed, load_means(speed), unbalanced, sums);
-    for (std::size_t t = 0; t < terms.size(); ++t)
-      carried_[t].mean_torque =
-          (terms[t].stiffness->static_stiffness() + terms[t].stiffness->static_beyond_matrices()) *
-          product(terms[t].z, z);
-  }
+  find_mean_torques(speed);
   several_amplitudes_ = false;
   if (!follows_amplitude_) return;
   const auto orders = static_cast<Eigen::Index>(orders_.size()),

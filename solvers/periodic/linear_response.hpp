@@ -8,6 +8,7 @@
 #include <array>
 
 #include "solvers/linear/lane_elimination.hpp"
+#include "solvers/periodic/damped_pairs.hpp"
 #include "solvers/periodic/lane_sections.hpp"
 #include "solvers/periodic/mean_equilibrium.hpp"
 #include "solvers/periodic/order_content.hpp"
@@ -60,6 +61,12 @@ class LinearResponse {
   OrderContent& content() { return *content_; }
   /// Damping values on the pattern, with the loads' mean slopes at the speed.
   const Vector& damping_at(double speed);
+  bool follows_mean_torque() const { return follows_mean_; }
+  /// A complex stiffness of a mode of frequency omega > 0 [rad/s] at the speed beyond that of its own matrices: under the mean
+  /// torque there, and the amplitude of these matrices.
+  std::complex<double> mode_stiffness(std::size_t term, double speed, double omega);
+  /// The matrices of a mode of frequency omega > 0 [rad/s] at the speed, with the loads' damping there. part: of what mode_stiffness() adds, 0 to 1.
+  ModeMatrices mode_matrices(double speed, double omega, double part = 1.0);
 
  private:
   void check_model(bool close_contacts, std::vector<Finding>& findings) const;
@@ -72,6 +79,8 @@ class LinearResponse {
   void find_carried_loads(double speed);
   /// sqrt(sum |X_h|^2) of term t in the response under the loads that are set.
   double amplitude_of(std::size_t t, double speed);
+  /// The mean torques of these loads, where complex stiffnesses depend on them.
+  void find_mean_torques(double speed);
   std::vector<double> load_means(double speed);
   /// Deviations under mean loads at the speed, >= 0; unbalanced and load_sum are those of a Point.
   std::vector<double> mean_motion(double speed, const std::vector<double>& means, Vector& unbalanced,
@@ -115,9 +124,10 @@ class LinearResponse {
   std::optional<OrderContent> content_;
   double direction_ = 1.0;  // sign of the reference shaft's speed
   Vector mass_, damping_, stiffness_, damping_here_, stiffness_here_;
-  Vector damping_before_, stiffness_before_;      // values of the last speed
-  bool plain_ = false;                            // nothing was added to the values of the last speed
-  Vector damping_at_omega_, stiffness_at_omega_;  // values with complex stiffnesses; unused without them
+  Vector damping_before_, stiffness_before_;  // values of the last speed
+  bool plain_ = false;                        // nothing was added to the values of the last speed
+  // Values with complex stiffnesses; unused without them.
+  Vector damping_at_omega_, stiffness_at_omega_, mode_damping_, mode_stiffness_;
   /// Slots of the pattern to which frequency terms contribute; for each its term and its factor.
   std::vector<int> slots_, slot_terms_;
   std::vector<double> slot_times_;

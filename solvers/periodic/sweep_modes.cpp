@@ -19,12 +19,13 @@ namespace {
 constexpr int kMostUnknowns = 400;   // unknowns up to which damped modes are dense; beyond, one by one
 constexpr int kFirstModes = 16;      // number of undamped modes that are found first
 constexpr int kMostModes = 128;      // largest number of undamped modes that are found
+constexpr int kSteps = 8;            // from the matrices' stiffnesses to k* of a mode
 constexpr double kSameMode = 1e-9;   // relative difference of lambda of one and the same mode [-]
 constexpr int kModeSpeeds = 9;       // number of speeds for modes if loads depend on the speed
 constexpr int kMostModeSpeeds = 33;  // largest number with those at which their damping bends
 constexpr double kOneSpeed = 1e-10;  // relative difference of speeds that are one but for rounding [-]
-constexpr double kSameSlope =
-    1e-9;  // difference of a load's damping that is rounding, relative to the largest [-]
+constexpr double kSameValue =
+    1e-9;                       // difference of damping or stiffness that is rounding, relative to it [-]
 constexpr double kBend = 1e-2;  // the same, off the line between two speeds, that takes one between them [-]
 
 /// For each mode of `next` the number of the mode of `last` that it continues, by shape: largest |x' y| / (|x| |y|) first,
@@ -55,12 +56,29 @@ std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const std::vecto
   return from;
 }
 
-/// The speeds at which the modes are found: the middle one where no load damps differently at any of the sweep's speeds; else
-/// kModeSpeeds of equal distance, and of the sweep's speeds those between which the loads' damping bends.
+/// Takes a mode of the model's own matrices, of complex stiffnesses those in time, on to that with k* at its frequency and the
+/// mean torques of the speed, in steps small enough that it stays the same one. False: lost on the way, and both are as given.
+bool take_on(const System& system, LinearResponse& response, DampedPairs& pairs, double speed,
+             std::complex<double>& lambda, Eigen::VectorXcd& shape) {
+  const int steps = system.frequency_terms().empty() ? 1 : kSteps;
+  std::complex<double> found = lambda;
+  Eigen::VectorXcd its = shape;
+  for (int step = 1; step <= steps; ++step) {
+    const double part = static_cast<double>(step) / steps;
+    const auto matrices = [&](double omega) { return response.mode_matrices(speed, omega, part); };
+    if (!pairs.refine(matrices, found, its)) return false;
+  }
+  lambda = found, shape = its;
+  return true;
+}
+
+/// The speeds at which the modes are found: the middle one where at all of the sweep's speeds each load damps alike and the mean
+/// torque leaves each stiffness as it is; else kModeSpeeds of equal distance, and of the sweep's speeds those between which that bends.
 Vector speeds_of_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
   const double low = speeds.front(), high = speeds.back();
   const Vector middle = Vector::Constant(1, 0.5 * (low + high));
-  if (!response.content().follows_speed() || speeds.size() < 2) return middle;
+  if ((!response.content().follows_speed() && !response.follows_mean_torque()) || speeds.size() < 2)
+    return middle;
   std::map<double, bool> wanted;
   for (int i = 0; i < kModeSpeeds; ++i) wanted[low + (high - low) * i / (kModeSpeeds - 1)] = true;
   for (const double speed : speeds) {
@@ -71,24 +89,31 @@ Vector speeds_of_modes(const System& system, LinearResponse& response, const std
   OrderContent content(system, {}, none);
   std::vector<double> at;
   std::vector<char> taken;
-  Eigen::MatrixXd slopes(static_cast<Eigen::Index>(content.loads().size()),
-                         static_cast<Eigen::Index>(wanted.size()));
+  // Of loads their damping, relative to the largest; of stiffnesses what they are beyond their matrices, relative to these.
+  const auto loads = static_cast<Eigen::Index>(content.loads().size()),
+             stiffnesses = static_cast<Eigen::Index>(system.frequency_terms().size());
+  Eigen::MatrixXd values(loads + stiffnesses, static_cast<Eigen::Index>(wanted.size()));
   for (const auto& [speed, take] : wanted) {
-    Eigen::Index load = 0;
+    const auto column = static_cast<Eigen::Index>(at.size());
+    Eigen::Index row = 0;
     for (const OrderContent::Content& here : content.at(response.direction() * speed))
-      slopes(load++, static_cast<Eigen::Index>(at.size())) = here.speed_slope;
+      values(row++, column) = here.speed_slope;
+    for (std::size_t t = 0; row < values.rows(); ++t)
+      values(row++, column) = response.mode_stiffness(t, speed, high).real() /
+                              system.frequency_terms()[t].stiffness->static_stiffness();
     at.push_back(speed), taken.push_back(take);
   }
-  const double largest = slopes.cwiseAbs().maxCoeff();
-  if (!((slopes.colwise() - slopes.col(0)).cwiseAbs().maxCoeff() > kSameSlope * largest)) return middle;
+  if (const double largest = loads > 0 ? values.topRows(loads).cwiseAbs().maxCoeff() : 0.0; largest > 0.0)
+    values.topRows(loads) /= largest;
+  if (!((values.colwise() - values.col(0)).cwiseAbs().maxCoeff() > kSameValue)) return middle;
   for (int count = kModeSpeeds; count < kMostModeSpeeds; ++count) {
-    double most = kBend * largest;
+    double most = kBend;
     std::size_t bent = at.size();
     for (std::size_t from = 0, to = 0; from + 1 < at.size(); from = to) {
       for (to = from + 1; !taken[to];) ++to;
       for (std::size_t i = from + 1; i < to; ++i) {
         const double part = (at[i] - at[from]) / (at[to] - at[from]);
-        const auto column = [&](std::size_t j) { return slopes.col(static_cast<Eigen::Index>(j)); };
+        const auto column = [&](std::size_t j) { return values.col(static_cast<Eigen::Index>(j)); };
         const double off =
             (column(i) - (1.0 - part) * column(from) - part * column(to)).cwiseAbs().maxCoeff();
         if (off > most) most = off, bent = i;
@@ -156,11 +181,17 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
       shapes.col(mode) = set.shapes.col(static_cast<Eigen::Index>(m));
       swings[static_cast<std::size_t>(mode)] = 1;
     }
-    poles.damping.push_back(poles.pairs.damping() + load_damping(system, modes.speeds[i]));
     Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), shapes.cols());
     for (int node = 0; node < system.node_count(); ++node)
       if (const NodeMap& map = system.node_map(node); map.unknown >= 0)
         of_unknowns.row(map.unknown) = shapes.row(node) / map.coeff;
+    for (Eigen::Index mode = 0; mode < lambda.size() && !system.frequency_terms().empty(); ++mode) {
+      if (lambda[mode] == 0.0) continue;
+      pause();
+      Eigen::VectorXcd shape = of_unknowns.col(mode);
+      take_on(system, response, poles.pairs, modes.speeds[i], lambda[mode], shape);
+      of_unknowns.col(mode) = shape;
+    }
   }
   number_modes(modes, poles);
   return modes;
@@ -189,8 +220,6 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
     last.emplace_back(0.0, undamped.omega(m));
   }
   for (Eigen::Index i = 0; i < modes.speeds.size(); ++i) {
-    const Vector damping = pairs.damping() + load_damping(system, modes.speeds[i]);
-    poles.damping.push_back(damping);
     Eigen::VectorXcd& found = poles.lambda.emplace_back(Eigen::VectorXcd::Zero(undamped.count()));
     Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), undamped.count());
     for (std::size_t m = 0; m < shapes.size(); ++m) {
@@ -198,10 +227,10 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
       pause();
       std::complex<double> lambda = last[m];
       Eigen::VectorXcd shape = shapes[m];
-      const bool settled = pairs.refine(damping, lambda, shape);
+      const bool settled = take_on(system, response, pairs, modes.speeds[i], lambda, shape);
       of_unknowns.col(mode) = shape;
       // What it does not swing as is no guess for the next speed.
-      if (!settled || !(lambda.imag() > 0.0)) continue;
+      if (!settled) continue;
       found[mode] = last[m] = lambda, shapes[m] = shape;
       const bool known =
           ((modes.lambda.col(i).head(mode).array() - lambda).abs() < kSameMode * std::abs(lambda)).any();
@@ -218,16 +247,15 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
 std::string fixed_stiffness_note(const System& system) {
   std::vector<std::string> names;
   for (const FrequencyTerm& term : system.frequency_terms())
-    if (term.stiffness->follows_mean_torque() || term.stiffness->amplitudes().size() > 1)
+    if (term.stiffness->amplitudes().size() > 1)
       names.push_back(system.element_instances()[idx(index(term.element))].name);
   std::string list;
   for (std::size_t i = 0; i < names.size(); ++i)
     list += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
   return names.empty() ? ""
                        : "modes, and where orders meet them, have the stiffness of " + list +
-                             " at its at_mean_torque and at_amplitude; amplitudes and peaks have that under "
-                             "the mean torque and amplitude at each speed, and the peaks say where the "
-                             "vibration is largest";
+                             " at its at_amplitude; amplitudes and peaks have that under the amplitude at "
+                             "each speed, and the peaks say where the vibration is largest";
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ class Search {
     for (int step = 0; step < kMostSteps; ++step) {
       if (!(speed >= low_ && speed <= high_) || sweep_.modes.at(mode, speed) == 0.0) break;
       speed = known_or(speed);
-      const std::complex<double> lambda = pole_at(mode, speed).lambda[0];
+      const std::complex<double> lambda = poles_.at(sweep_.modes, mode, speed).lambda[0];
       const double off = std::abs(order * speed - lambda.imag());
       const double distance = off / (std::abs(lambda.real()) + 2.0 * kSameSpeed * std::abs(lambda));
       if (distance < best.distance) best = {speed, lambda, distance};
@@ -328,7 +328,7 @@ class Search {
   /// x = (o w - Im lambda) / |Re lambda| the amplitude is r / (1 + i x) + b0 + b1 x + b2 x^2, from r, the mode's residue
   /// over |Re lambda|, and values at x = -1, 0, 1.
   void find_own_parts(SweepCritical& critical, int order) {
-    const DampedPole pole = pole_at(critical.mode, critical.speed);
+    const DampedPole pole = poles_.at(sweep_.modes, critical.mode, critical.speed);
     const std::complex<double> lambda = pole.lambda[0], i(0.0, 1.0);
     const double width = std::abs(lambda.real()) / critical.order;
     const auto at = [&](double x) -> Eigen::RowVectorXcd {
@@ -356,11 +356,6 @@ class Search {
     }
   }
 
-  /// A mode with the loads' damping at a speed.
-  DampedPole pole_at(Eigen::Index mode, double speed) {
-    return poles_.at(sweep_.modes, mode, speed, response_.damping_at(speed));
-  }
-
   LinearResponse& response_;
   TrigonometricSum& sum_;
   const std::function<void()>& pause_;
@@ -380,7 +375,8 @@ class Search {
 void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
                       const std::function<void()>& wanted_pause, LinearSweep& sweep) {
   const std::function<void()> pause = wanted_pause ? wanted_pause : [] {};
-  DampedPoles poles{DampedPairs(system)};
+  DampedPoles poles{DampedPairs(system),
+                    [&](double speed, double omega) { return response.mode_matrices(speed, omega); }};
   find_sweep_modes(system, response, pause, sweep, poles);
   Search search(response, sum, pause, sweep, poles);
   search.seed();

@@ -89,9 +89,9 @@ TEST_CASE("Criticals say that a coupling has another stiffness in them than in t
     std::ofstream(file)
         << "format = 1\n[nodes]\na = { constant_speed_rpm = 600 }\nb = {}\n[elements]\n"
            "J = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 1 }\n"
-           "rubber = { type = \"elastic_coupling\", nodes = [\"a\", \"b\"], by_mean_torque = { "
-        << (follows ? "mean_torque_Nm = [0, 500], stiffness_Nm_per_rad = [1000, 2000], loss_factor = [0, 0]"
-                    : "mean_torque_Nm = [0], stiffness_Nm_per_rad = [1000], loss_factor = [0]")
+           "rubber = { type = \"elastic_coupling\", nodes = [\"a\", \"b\"], by_amplitude = { "
+        << (follows ? "amplitude_rad = [0, 1], stiffness_Nm_per_rad = [1000, 2000], loss_factor = [0, 0]"
+                    : "amplitude_rad = [0], stiffness_Nm_per_rad = [1000], loss_factor = [0]")
         << " } }\ne = { type = \"engine_order_torque\", node = \"b\", mean_Nm = 250, harmonics = { "
            "order = [1], amplitude_Nm = [1] } }\n";
     for (const char* command : {"campbell", "sweep"}) {
@@ -99,8 +99,36 @@ TEST_CASE("Criticals say that a coupling has another stiffness in them than in t
                  json = drev_command({command, file, "--speeds", "100:100:900", "--json"});
       INFO(text.err << text.out << json.out);
       REQUIRE(json.exit_code == 0);
-      CHECK(contains(text.out, "stiffness of rubber at its at_mean_torque") == follows);
+      CHECK(contains(text.out, "stiffness of rubber at its at_amplitude") == follows);
       CHECK(nlohmann::json::parse(json.out).at("criticals_note").is_null() != follows);
     }
+  }
+}
+
+TEST_CASE("Campbell has the stiffness of a coupling under the mean torque, which a node can take up",
+          "[campbell]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string file = (folder / "free.toml").string();
+  std::ofstream(file)
+      << "format = 1\n[nodes]\na = { nominal_speed_rpm = 600 }\nb = {}\n[elements]\n"
+         "J_a = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 2 }\n"
+         "J_b = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 2 }\n"
+         "rubber = { type = \"elastic_coupling\", nodes = [\"a\", \"b\"], by_mean_torque = { mean_torque_Nm "
+         "= "
+         "[0, 400], stiffness_Nm_per_rad = [1000, 5000], loss_factor = [0, 0] } }\n"
+         "e = { type = \"engine_order_torque\", node = \"b\", mean_Nm = 200, harmonics = { order = [1], "
+         "amplitude_Nm = [1] } }\n";
+  // Left over, the mean torque speeds the train up: half of it goes through the coupling.
+  for (const bool balanced : {false, true}) {
+    std::vector<std::string> words{"campbell", file, "--speeds", "100:100:900", "--json"};
+    if (balanced) words.insert(words.end(), {"--balance", "a"});
+    const auto run = drev_command(words);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    const auto found = nlohmann::json::parse(run.out);
+    CHECK(found["modes"][0]["frequency_Hz"][0].get<double>() ==
+          Approx(std::sqrt(balanced ? 3000.0 : 2000.0) / (2.0 * std::acos(-1.0))).epsilon(1e-10));
+    CHECK(contains(found["criticals_note"].get<std::string>(),
+                   balanced ? "taken up at a" : "Couplings whose stiffness follows the mean torque"));
   }
 }

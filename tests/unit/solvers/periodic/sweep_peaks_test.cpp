@@ -371,3 +371,57 @@ TEST_CASE("Damping that loads have at some speeds only counts for the modes and 
   // |k + i c w| p / (2 |Re lambda| Im lambda) at the pole, not a hundred times as much.
   CHECK(sweep.criticals[0].own_amplitude < 2.0);
 }
+
+TEST_CASE("Modes and criticals have the stiffness and loss of a coupling under the mean torque at each speed",
+          "[sweep_peaks]") {
+  // A disc of 1 kg m2 that a torque of 0.5 N m s times its speed brakes: J lambda^2 + (c + eta k / w) lambda + k = 0, w = Im lambda,
+  // with k and eta at that torque; w by iteration. With a loss its branches, at lambda in place of i w, add some eta^2 / 4.
+  constexpr double c = 0.5, order = 2.0;
+  for (const double loss : {0.0, 0.1}) {
+    Model m("disc");
+    m.add_node("a"), m.add_node("b");
+    m.constant_speed("a", rpm(500.0));
+    m.add<Inertia>("J", {"b"}, {.inertia = 1.0});
+    m.add<ElasticCoupling>(
+        "coupling", {"a", "b"},
+        {.material = {
+             .by_mean_torque = {{0.0, 20.0, 60.0}, {1000.0, 2000.0, 9000.0}, {2.0 * loss, loss, 0.5 * loss}},
+             .at_mean_torque = 10.0,
+             .lowest_frequency = 3.0,
+             .highest_frequency = 20.0,
+             .permitted_error = 0.5}});
+    m.add<TorqueCurve>("p", {"b"}, {.speeds = {0.0, 1000.0}, .torques = {0.0, -1000.0 * c}});
+    m.add<EngineOrderTorque>("gas", {"b"}, {.harmonics = {{order, 1.0, 0.0}}, .twist_feedback = false});
+    const auto closed = [&](double speed) {
+      const double torque = c * speed, part = torque < 20.0 ? torque / 20.0 : torque / 40.0 - 0.5;
+      const double k = torque < 20.0 ? 1000.0 + 1000.0 * part : 2000.0 + 7000.0 * part,
+                   eta = loss * (torque < 20.0 ? 2.0 - part : 1.0 - 0.5 * part);
+      double w = std::sqrt(k), decay = 0.0;
+      for (int i = 0; i < 100; ++i) {
+        decay = 0.5 * (c + eta * k / w);
+        w = std::sqrt(k - decay * decay);
+      }
+      return Complex(-decay, w);
+    };
+    const LinearSweep sweep =
+        sweep_linear(m.build(), {.speeds = rpm_speeds(100.0, 50.0, 1100.0), .orders = {order}});
+    REQUIRE(sweep.modes.speeds.size() > 9);
+    for (Eigen::Index i = 0; i < sweep.modes.speeds.size(); ++i) {
+      const Complex expected = closed(sweep.modes.speeds[i]);
+      double off = 1.0;  // the coupling's own modes are far off
+      for (const Complex lambda : sweep.modes.lambda.col(i))
+        off = std::min(off, std::abs(lambda - expected) / std::abs(expected));
+      CHECK(off < (loss > 0.0 ? 0.01 : 1e-10));
+    }
+    double low = rpm(100.0), high = rpm(1100.0);
+    while (high - low > 1e-9)
+      (order * (0.5 * (low + high)) < closed(0.5 * (low + high)).imag() ? low : high) = 0.5 * (low + high);
+    const Complex lambda = closed(low);
+    REQUIRE(sweep.criticals.size() == 1);
+    CHECK(2.0 * kPi * sweep.criticals[0].frequency_Hz ==
+          Approx(lambda.imag()).epsilon(loss > 0.0 ? 0.01 : 1e-9));
+    CHECK(sweep.criticals[0].damping_ratio ==
+          Approx(-lambda.real() / std::abs(lambda)).epsilon(loss > 0.0 ? 0.02 : 1e-9));
+    CHECK(sweep.criticals[0].speed == Approx(low).epsilon(0.02));
+  }
+}
