@@ -1,6 +1,8 @@
 """Modes as NumPy arrays on drev's own memory, read-only."""
 from functools import cached_property
 
+from ._run import Stored
+
 
 class _Table:
     """The rows of a table as a DataFrame, HTML and text."""
@@ -48,6 +50,10 @@ class Modes(_Table):
         #: rows of `shapes`
         self.nodes = handle.nodes
 
+    def __reduce__(self):
+        names = ("model", "rigid_modes", "contact", "how", "nodes", "frequency_Hz", "error_Hz", "shapes")
+        return Modes, (Stored(self._handle, names, {}),)
+
     @cached_property
     def frequency_Hz(self):
         """Natural frequencies in ascending order [Hz]."""
@@ -91,6 +97,11 @@ class DampedModes(_Table):
         self.nodes = handle.nodes
         #: rows of kinetic, elastic and dissipated
         self.elements = handle.elements
+
+    def __reduce__(self):
+        names = ("model", "rigid_modes", "contact", "nodes", "elements", "eigenvalues", "frequency_Hz",
+                 "natural_frequency_Hz", "damping_ratio", "real_eigenvalues", "shapes")
+        return DampedModes, (Stored(self._handle, names, {"energy": ("kinetic", "elastic", "dissipated")}),)
 
     @cached_property
     def eigenvalues(self):

@@ -42,6 +42,24 @@ _CONTACT_FIGURES = {
 }
 
 
+class Stored:
+    """What a handle of the extension module gives, on Python's memory: results are pickled with it in the handle's place.
+
+    names: its attributes. calls: {method: arguments}, what each of its methods returns for each argument.
+    """
+
+    def __init__(self, handle, names, calls):
+        self._given = {name: getattr(handle, name) for name in names}
+        self._calls = {name: {a: getattr(handle, name)(a) for a in arguments} for name, arguments in calls.items()}
+
+    def __getattr__(self, name):
+        if name in self.__dict__.get("_given", {}):
+            return self._given[name]
+        if name in self.__dict__.get("_calls", {}):
+            return self._calls[name].__getitem__
+        raise AttributeError(name)
+
+
 def report_frame(page, height=760):
     """The report page in a separate frame, for notebooks."""
     return (
@@ -63,6 +81,10 @@ class Run:
         self._column = {name: i for i, (name, _) in enumerate(handle.channels)}
         #: unit of each channel
         self.units = dict(handle.channels)
+
+    def __reduce__(self):
+        names = ("status", "channels", "json", "text", "notes", "times")
+        return Run, (Stored(self._handle, names, {"samples": range(len(self._column))}), self.report_html)
 
     @property
     def ok(self):

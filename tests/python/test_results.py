@@ -1,5 +1,6 @@
 """Results as arrays: without a copy, read-only, alive as long as an array is; figures with their errors."""
 import gc
+import pickle
 import weakref
 
 import numpy as np
@@ -146,6 +147,30 @@ def test_a_run_iterates_over_its_channels_as_a_table_does():
     samples = dict(run)
     assert list(samples) == run.channels
     assert all(len(samples[name]) == len(run) and (samples[name] == run[name]).all() for name in run)
+
+
+def test_results_and_models_are_pickled():
+    m = swinging()
+    run = m.run(duration_s=0.1)
+    for _ in range(2):  # what was unpickled is pickled again
+        m = pickle.loads(pickle.dumps(m))
+        again = pickle.loads(pickle.dumps(run))
+        assert again.summary == run.summary and again.text == run.text and again.ok
+        assert again.figures == run.figures and again.notes == run.notes
+        assert again.channels == run.channels and len(run) > 2
+        assert all(np.array_equal(again[name], run[name]) for name in run.channels)
+        assert np.array_equal(again.time, run.time)
+        run = again
+    assert np.array_equal(m.run(duration_s=0.1).time, run.time)
+    modes, damped = m.modes(), m.damped_modes()
+    again = pickle.loads(pickle.dumps(modes))
+    assert np.array_equal(again.shapes, modes.shapes) and str(again) == str(modes) and repr(again) == repr(modes)
+    again = pickle.loads(pickle.dumps(damped))
+    assert np.array_equal(again.elastic, damped.elastic) and np.array_equal(again.eigenvalues, damped.eigenvalues)
+    assert str(again) == str(damped)
+    campbell = drev.load("camshaft", drive="held").campbell(speeds_rpm="300:100:600")
+    again = pickle.loads(pickle.dumps(campbell))
+    assert again.data == campbell.data and np.array_equal(again.frequency_Hz, campbell.frequency_Hz)
 
 
 def test_a_notebook_shows_the_report():
