@@ -18,7 +18,7 @@ constexpr double kSpeedTolerance = 1e-9;    // relative, constant_speed against 
 constexpr double kInitialTolerance = 1e-9;  // relative, of initial conditions that say the same
 
 bool usable_name(const std::string& name) {
-  return !name.empty() && name.find_first_of(".,\"") == std::string::npos && !has_control_characters(name);
+  return !name.empty() && name.find_first_of(".,*\"") == std::string::npos && !has_control_characters(name);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ void SystemBuilder::check_names() {
   const auto check = [this](const char* what, const std::string& name, bool first) {
     if (!usable_name(name))
       findings_.push_back({model_.name(), what, name, "",
-                           "must be non-empty, without '.', ',', quotes and control characters"});
+                           "must be non-empty, without '.', ',', '*', quotes and control characters"});
     if (!first) findings_.push_back({model_.name(), what, name, "", "is used twice"});
   };
   const auto name_of_node = [this](int i) -> const std::string& { return node_name(i); };
