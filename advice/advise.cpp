@@ -282,7 +282,7 @@ class Ladder {
         full_(started(std::move(built), figure_)),
         evidence_(full_) {
     const FigureSpan span = figure_span(model_case.settle, full_, model_case.start == Start::periodic,
-                                        model_case.duration, turn_time(model_case, full_));
+                                        model_case.duration, model_case.static_turn);
     figure_.from = std::max(figure_.from, span.from);
     figure_.watch = evidence_.channels();
   }

@@ -1,6 +1,7 @@
 #include "models/figure_span.hpp"
 
 #include <drev/solvers/modes/damped_modes.hpp>
+#include <drev/solvers/start.hpp>
 
 #include <cmath>
 
@@ -8,8 +9,19 @@
 
 namespace drev {
 
+namespace {
+
+/// In which loads repeat at a nominal speed that is constant over the run [s]; 0: it is not, or they do not.
+double cycle_of(const System& system, double turn, double duration) {
+  const double cycle = time_of_turn(system, turn > 0.0 ? turn : 1.0, duration);
+  const bool stands = !system.reference() || !system.reference()->at;
+  return turn > 0.0 || (cycle == 0.0 && !stands) ? cycle : load_cycle(system);
+}
+
+}  // namespace
+
 FigureSpan figure_span(const std::optional<Settle>& asked, const System& system, bool periodic,
-                       double duration, double cycle) {
+                       double duration, double turn) {
   FigureSpan span;
   span.settled = periodic;
   if (!asked) return span;
@@ -23,6 +35,7 @@ FigureSpan figure_span(const std::optional<Settle>& asked, const System& system,
     return span;
   }
   const Settling settling = settling_time(system);
+  const double cycle = settling.time < duration ? cycle_of(system, turn, duration) : 0.0;
   span.settled = settling.time + cycle < duration;
   if (span.settled) span.from = settling.time;
   const auto seconds = [](double time) { return rounded_text(time, 6) + " s"; };

@@ -16,9 +16,9 @@ struct FigureSpan {
 };
 
 /// system: that is run, from its start. periodic: it starts in the periodic steady state. duration: of the run [s].
-/// cycle: s, of which the settled part must hold one; 0: none.
+/// turn: of the reference shaft, in which loads repeat [rad]; 0: what acts tells. The settled part must hold one cycle.
 FigureSpan figure_span(const std::optional<Settle>& asked, const System& system, bool periodic,
-                       double duration, double cycle);
+                       double duration, double turn);
 
 /// angle / |nominal speed| of the reference shaft, where that is the same at the start and at the end of a run of
 /// this duration [s]; 0: it is not, or nothing turns.

@@ -105,21 +105,21 @@ bool repeats(const System& system, double cycle) {
   return change <= kSameLoad * largest;
 }
 
-/// The first cycle in which all that acts repeats, at the speed of the start [s]; where none is, one turn of the reference shaft,
-/// or what the loads and given motions share; 0: there is none.
-double mean_cycle_of(const System& system) {
+double speed_at_start(const System& system) {
   const auto& reference = system.reference();
-  const double speed = reference && reference->at ? std::abs(reference->at(0.0).rate) : 0.0;
-  const auto first_of = [&](const std::vector<double>& cycles) {
-    const auto found =
-        std::find_if(cycles.begin(), cycles.end(), [&](double cycle) { return repeats(system, cycle); });
-    return found == cycles.end() ? 0.0 : *found;
-  };
-  const std::vector<double> few = cycles_of(system, speed, {1.0, 2.0, 4.0});
-  double cycle = first_of(few);
-  // The search for the turns of all shafts calls every load thousands of times.
-  if (cycle == 0.0 && speed > 0.0) cycle = first_of(cycles_of(system, speed, {cycle_turns(system)}));
-  return cycle > 0.0 || few.empty() ? cycle : few.front();
+  return reference && reference->at ? std::abs(reference->at(0.0).rate) : 0.0;
+}
+
+std::vector<double> few_cycles_of(const System& system) {
+  return cycles_of(system, speed_at_start(system), {1.0, 2.0, 4.0});
+}
+
+/// Over which loads have their mean [s]: the cycle in which all that acts repeats; where none is known, one turn of the reference
+/// shaft, or what the loads and given motions share; 0: there is none.
+double mean_cycle_of(const System& system) {
+  if (const double cycle = load_cycle(system); cycle > 0.0) return cycle;
+  const std::vector<double> few = few_cycles_of(system);
+  return few.empty() ? 0.0 : few.front();
 }
 
 FoundStart start_static(const System& system, const StartOptions& options) {
@@ -228,6 +228,17 @@ FoundStart start_periodic(const System& system, const StartOptions& options) {
 }
 
 }  // namespace
+
+double load_cycle(const System& system) {
+  const auto first_of = [&](const std::vector<double>& cycles) {
+    const auto found =
+        std::find_if(cycles.begin(), cycles.end(), [&](double cycle) { return repeats(system, cycle); });
+    return found == cycles.end() ? 0.0 : *found;
+  };
+  const double cycle = first_of(few_cycles_of(system)), speed = speed_at_start(system);
+  // The search for the turns of all shafts calls every load thousands of times.
+  return cycle == 0.0 && speed > 0.0 ? first_of(cycles_of(system, speed, {cycle_turns(system)})) : cycle;
+}
 
 const char* to_text(Start start) {
   return start == Start::periodic ? "periodic" : start == Start::static_equilibrium ? "static" : "rest";

@@ -33,6 +33,9 @@ std::optional<Start> start_of(const std::string& name);
 /// Every start's name.
 std::vector<std::string> start_names();
 
+/// The first of these cycles in which all that acts where nothing deviates repeats, at the speed of the start [s]; 0: none is known.
+double load_cycle(const System& system);
+
 struct StartOptions {
   double cycle = 0.0;       ///< s, to be tried first; 0: none
   double duration = 0.0;    ///< s, of the run: the nominal speed must be constant over it for a cycle

@@ -342,7 +342,7 @@ RunResult compute_run(const RunRequest& request, const RunPlan& plan, std::vecto
   const std::string unsettled = plan.start ? plan.start->unsettled() : "";
   const bool steady =
       request.start == Start::periodic && plan.start->error <= kSettledPart && unsettled.empty();
-  result.span = figure_span(request.settle, full, steady, duration, cycle_of(request.model));
+  result.span = figure_span(request.settle, full, steady, duration, model_case.static_turn);
   result.span.start = plan.start ? plan.start->how : "from the model's initial conditions";
   add_modes(full, result);
   add_static_force(model_case, full, result);

@@ -107,7 +107,11 @@ TEST_CASE("A run that does not settle says so, and has its figures of the whole 
 }
 
 TEST_CASE("A run that settles but has no whole cycle left says just that") {
-  // It has settled after ln(1000)/2 = 3.45388 s; the cycle, four turns, is 0.251327 s.
+  // It has settled after ln(1000)/2 = 3.45388 s; the cycle, four turns, is 0.251327 s. That of the loads is two turns.
+  const std::string of_loads = disc("8", "settle = \"auto\"\n");
+  CHECK(run_of(of_loads, {"--duration", "3.58"}).json["results"]["of"]["settled"] == true);
+  CHECK(contains(run_of(of_loads, {"--duration", "3.57"}).json["results"]["of"]["reason"].get<std::string>(),
+                 "less than one cycle of 0.125664 s"));
   const std::string model = disc("8", "settle = \"auto\"\nstatic_turn_deg = 1440\n");
   const Ran shorter = run_of(model, {"--duration", "3.6"});
   REQUIRE(shorter.exit_code == 0);
