@@ -42,7 +42,13 @@ LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& o
     : system_(system), assembler_(system), orders_(orders) {
   check_model(options.close_contacts, findings);
   content_.emplace(system, orders, findings);
-  for (const LoadTerm* load : content_->loads()) load_rows_.push_back(system.row_of(load->node));
+  std::map<int, std::vector<std::size_t>> on_unknown;
+  for (const LoadTerm* load : content_->loads()) {
+    const std::vector<Entry>& row = load_rows_.emplace_back(system.row_of(load->node));
+    if (row.size() == 1) on_unknown[row[0].index].push_back(load_rows_.size() - 1);
+  }
+  for (const auto& [unknown, loads] : on_unknown)
+    if (loads.size() > 1) together_.push_back(loads);
   assembler_.contact_values({1.0, 0.0, 0.0}, Contact::closed, mass_);
   assembler_.contact_values({0.0, 1.0, 0.0}, Contact::closed, damping_);
   assembler_.contact_values({0.0, 0.0, 1.0}, Contact::closed, stiffness_);
@@ -430,52 +436,6 @@ void LinearResponse::find_carried_loads(double speed) {
   }
   throw SolverError(system_.name() + ", " + to_text(to_rpm(speed)) +
                     " rpm: the amplitudes of several elements that follow them did not settle");
-}
-
-LinearResponse::Resonance LinearResponse::resonance(double speed, int order) {
-  constexpr double kAway = 1e-4;      // larger distance, beside which the mode's growth towards it shows [-]
-  constexpr double kGrowth = 10.0;    // growth from kAway to kNear of what the mode moves [-]
-  constexpr double kRounding = 1e-9;  // amplitude that is rounding, relative to the largest [-]
-  Resonance found;
-  Point away;
-  solve((1.0 + kAway) * speed, away, order);
-  const double before = motion();
-  solve((1.0 + kNear) * speed, found.near, order);
-  found.excited = motion() > kGrowth * before;
-  const Vector at_away = away.amplitude.row(order).cwiseAbs(),
-               at_near = found.near.amplitude.row(order).cwiseAbs();
-  for (Eigen::Index c = 0; c < at_near.size(); ++c)
-    found.unbounded.push_back(found.excited && at_near[c] > kGrowth * at_away[c] &&
-                              at_near[c] > kRounding * at_near.maxCoeff());
-  return found;
-}
-
-double LinearResponse::motion() const {
-  constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  if (active_.empty()) return 0.0;
-  if (lost_[0].v[0] != 0.0) return kInfinite;
-  double square = 0.0;
-  for (std::size_t i = 0; i < re_.size(); i += kLaneSets)
-    square += re_[i].v[0] * re_[i].v[0] + im_[i].v[0] * im_[i].v[0];
-  return std::sqrt(square);
-}
-
-void LinearResponse::vibration(double speed, Point& point, int only) {
-  constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  solve(speed, point, only);
-  const std::vector<int> lost = lost_orders_;
-  for (const int k : lost) {
-    const Resonance at = resonance(speed, k);
-    for (Eigen::Index c = 0; c < point.heat.size(); ++c) {
-      const bool unbounded = at.unbounded[static_cast<std::size_t>(c)];
-      point.amplitude(k, c) = unbounded ? kInfinite : at.near.amplitude(k, c);
-      point.twist(k, c) = unbounded ? kInfinite : at.near.twist(k, c);
-      if (at.near.heat[c] != 0.0) point.heat[c] += unbounded ? kInfinite : at.near.heat[c];
-    }
-    if (at.excited) continue;
-    point.input_power += at.near.input_power;
-    point.dissipated_power += at.near.dissipated_power;
-  }
 }
 
 void LinearResponse::solve(double speed, Point& point, int only) {

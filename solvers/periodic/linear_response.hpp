@@ -158,7 +158,8 @@ class LinearResponse {
   /// and Point::unbalanced; sum_of_parts_: Point::load_sum.
   Eigen::MatrixXd mean_of_parts_, sum_of_parts_;
   Vector given_means_, mean_figures_;
-  std::vector<std::vector<Entry>> load_rows_;  // row of each load of content() over the unknowns
+  std::vector<std::vector<Entry>> load_rows_;       // row of each load of content() over the unknowns
+  std::vector<std::vector<std::size_t>> together_;  // numbers of the loads on one unknown, of several each
   std::vector<std::complex<double>> z_;
 };
 

@@ -65,6 +65,22 @@ int LinearResponse::give_orders(double speed, std::size_t first) {
       for (int lane = 0; lane < used; ++lane) to[lane] = amplitudes[orders[lane]];
     std::fill(to + used, to + sets * kLanes, Complex(0.0, 0.0));
   }
+  // Loads that cancel leave rounding, which at the frequency of an undamped mode would pass for a load.
+  constexpr double kCancelled = 1e-13;  // sum relative to the sum of the sizes [-]
+  for (const std::vector<std::size_t>& loads : together_)
+    for (int lane = 0; lane < used; ++lane) {
+      const auto at = [&](std::size_t l) -> Complex& {
+        return given_[l * LaneSections::kFrequencies + idx(lane)];
+      };
+      Complex sum = 0.0;
+      double size = 0.0;
+      for (const std::size_t l : loads) {
+        const Complex torque = load_rows_[l][0].coeff * at(l);
+        sum += torque, size += std::abs(torque.real()) + std::abs(torque.imag());
+      }
+      if (std::abs(sum.real()) + std::abs(sum.imag()) <= kCancelled * size)
+        for (const std::size_t l : loads) at(l) = 0.0;
+    }
   rows_->add_loads(sets, given_, p_re_.data(), p_im_.data());
   return used;
 }
@@ -132,6 +148,52 @@ void LinearResponse::solve_orders(double speed, std::size_t first, Point& point)
     point.amplitude.row(k).setConstant(kInfinite);
     point.twist.row(k).setConstant(kInfinite);
     lost_orders_.push_back(static_cast<int>(k));
+  }
+}
+
+LinearResponse::Resonance LinearResponse::resonance(double speed, int order) {
+  constexpr double kAway = 1e-4;      // larger distance, beside which the mode's growth towards it shows [-]
+  constexpr double kGrowth = 10.0;    // growth from kAway to kNear of what the mode moves [-]
+  constexpr double kRounding = 1e-9;  // amplitude that is rounding, relative to the largest [-]
+  Resonance found;
+  Point away;
+  solve((1.0 + kAway) * speed, away, order);
+  const double before = motion();
+  solve((1.0 + kNear) * speed, found.near, order);
+  found.excited = motion() > kGrowth * before;
+  const Vector at_away = away.amplitude.row(order).cwiseAbs(),
+               at_near = found.near.amplitude.row(order).cwiseAbs();
+  for (Eigen::Index c = 0; c < at_near.size(); ++c)
+    found.unbounded.push_back(found.excited && at_near[c] > kGrowth * at_away[c] &&
+                              at_near[c] > kRounding * at_near.maxCoeff());
+  return found;
+}
+
+double LinearResponse::motion() const {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  if (active_.empty()) return 0.0;
+  if (lost_[0].v[0] != 0.0) return kInfinite;
+  double square = 0.0;
+  for (std::size_t i = 0; i < re_.size(); i += kLaneSets)
+    square += re_[i].v[0] * re_[i].v[0] + im_[i].v[0] * im_[i].v[0];
+  return std::sqrt(square);
+}
+
+void LinearResponse::vibration(double speed, Point& point, int only) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  solve(speed, point, only);
+  const std::vector<int> lost = lost_orders_;
+  for (const int k : lost) {
+    const Resonance at = resonance(speed, k);
+    for (Eigen::Index c = 0; c < point.heat.size(); ++c) {
+      const bool unbounded = at.unbounded[static_cast<std::size_t>(c)];
+      point.amplitude(k, c) = unbounded ? kInfinite : at.near.amplitude(k, c);
+      point.twist(k, c) = unbounded ? kInfinite : at.near.twist(k, c);
+      if (at.near.heat[c] != 0.0) point.heat[c] += unbounded ? kInfinite : at.near.heat[c];
+    }
+    if (at.excited) continue;
+    point.input_power += at.near.input_power;
+    point.dissipated_power += at.near.dissipated_power;
   }
 }
 

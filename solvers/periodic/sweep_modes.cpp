@@ -1,5 +1,6 @@
 #include <drev/core/error.hpp>
 #include <drev/core/law/frequency_stiffness.hpp>
+#include <drev/core/load.hpp>
 #include <drev/solvers/modes/damped_modes.hpp>
 #include <drev/solvers/modes/modes.hpp>
 
@@ -72,8 +73,68 @@ bool take_on(const System& system, LinearResponse& response, DampedPairs& pairs,
   return true;
 }
 
+/// Speeds between given ones at which a load that states how steep it may be over a range is steeper than at these: a gate may open
+/// and close between two of them.
+class HiddenSlopes {
+ public:
+  HiddenSlopes(const LoadTerm& load, double ratio) : load_(*load.load), ratio_(ratio) {}
+
+  std::vector<double> find(const std::vector<double>& speeds) {
+    std::vector<double> slopes;
+    for (const double speed : speeds) slopes.push_back(steepest_at(speed));
+    look(speeds, slopes, 0, speeds.size() - 1);
+    return found_;
+  }
+
+ private:
+  static constexpr double kMore = 1.25;   // times as steep as the points show that is more than they show [-]
+  static constexpr double kOther = 1e-2;  // difference from the line between two points that is a bend [-]
+  static constexpr int kAngles = 16, kDepth = 12, kMostLooks = 4000;
+
+  /// Largest size of its slope by the speed at this one of the reference shaft [N m s/rad].
+  double steepest_at(double speed) const {
+    double most = 0.0;
+    for (int i = 0; i < kAngles; ++i)
+      most = std::max(most, std::abs(load_
+                                         .evaluate({.nominal_angle = kTwoPi * (i + 0.5) / kAngles,
+                                                    .speed = ratio_ * speed,
+                                                    .nominal_speed = ratio_ * speed})
+                                         .dtorque_dspeed));
+    return most;
+  }
+  /// Whether it may be steeper between a and b than `shown`.
+  bool hides(double a, double b, double shown) const {
+    const Interval speed{std::min(ratio_ * a, ratio_ * b), std::max(ratio_ * a, ratio_ * b)};
+    const auto most = load_.steepest({{0.0, 0.0}, {0.0, kTwoPi * OrderContent::kMostTurns}, speed, speed});
+    return most && most->by_speed > kMore * shown;
+  }
+  void look(const std::vector<double>& speeds, const std::vector<double>& slopes, std::size_t from,
+            std::size_t to) {
+    const double shown = *std::max_element(slopes.begin() + static_cast<std::ptrdiff_t>(from),
+                                           slopes.begin() + static_cast<std::ptrdiff_t>(to) + 1);
+    if (from == to || !hides(speeds[from], speeds[to], shown)) return;
+    if (to == from + 1) return divide(speeds[from], slopes[from], speeds[to], slopes[to], kDepth);
+    const std::size_t middle = (from + to) / 2;
+    look(speeds, slopes, from, middle);
+    look(speeds, slopes, middle, to);
+  }
+  void divide(double a, double slope_a, double b, double slope_b, int depth) {
+    if (depth == 0 || ++looks_ > kMostLooks || !hides(a, b, std::max(slope_a, slope_b))) return;
+    const double middle = 0.5 * (a + b), slope = steepest_at(middle);
+    if (std::abs(slope - 0.5 * (slope_a + slope_b)) > kOther * std::max({slope, slope_a, slope_b}))
+      found_.push_back(middle);
+    divide(a, slope_a, middle, slope, depth - 1);
+    divide(middle, slope, b, slope_b, depth - 1);
+  }
+
+  const Load& load_;
+  double ratio_;
+  int looks_ = 0;
+  std::vector<double> found_;
+};
+
 /// The speeds at which the modes are found: the middle one where at all of the sweep's speeds each load damps alike and the mean
-/// torque leaves each stiffness as it is; else kModeSpeeds of equal distance, and of the sweep's speeds those between which that bends.
+/// torque leaves each stiffness as it is; else kModeSpeeds of equal distance, and of the sweep's speeds, and of those between them at which a load is steeper, those between which that bends.
 Vector speeds_of_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
   const double low = speeds.front(), high = speeds.back();
   const Vector middle = Vector::Constant(1, 0.5 * (low + high));
@@ -87,6 +148,12 @@ Vector speeds_of_modes(const System& system, LinearResponse& response, const std
   }
   std::vector<Finding> none;
   OrderContent content(system, {}, none);
+  std::vector<double> known;
+  for (const auto& [speed, take] : wanted) known.push_back(speed);
+  for (const LoadTerm* load : content.loads())
+    for (const double speed :
+         HiddenSlopes(*load, response.direction() * system.ratio(load->node)).find(known))
+      wanted.emplace(speed, false);
   std::vector<double> at;
   std::vector<char> taken;
   // Of loads their damping, relative to the largest; of stiffnesses what they are beyond their matrices, relative to these.

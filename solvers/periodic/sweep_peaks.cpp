@@ -131,7 +131,7 @@ class Search {
     for (std::size_t i = 0; i < sweep_.criticals.size(); ++i) {
       SweepCritical& critical = sweep_.criticals[i];
       const int order = numbers_[i];
-      if (!(critical.damping_ratio > kUndamped)) {
+      if (critical.damping_ratio == 0.0) {
         find_undamped(critical, order);
         continue;
       }
@@ -143,7 +143,7 @@ class Search {
       };
       // Within half the mode's width. An order that only rises or falls there, on the flank of another mode, has no
       // top of this one: it is stated where it meets the mode.
-      const double reach = 1.0 + critical.damping_ratio, width = kPeakSpeed * critical.speed;
+      const double reach = 1.0 + std::abs(critical.damping_ratio), width = kPeakSpeed * critical.speed;
       const double from = std::max(low_, critical.speed / reach),
                    to = std::min(high_, critical.speed * reach);
       const BracketedMaximum found = bracketed_maximum(from, critical.speed, to, width, amplitude);
@@ -185,7 +185,7 @@ class Search {
     const auto [speed, lambda, distance] = meeting(m, sweep_.orders[k], near);
     if (distance > 1.0) return;
     const double ratio = -lambda.real() / std::abs(lambda);
-    if (ratio > kTooDamped) return;
+    if (std::abs(ratio) > kTooDamped) return;
     for (const SweepCritical& other : sweep_.criticals)
       if (other.mode == m && other.order == sweep_.orders[k] &&
           std::abs(other.speed - speed) <= kSameSeed * std::abs(lambda.real()) / other.order)
@@ -195,10 +195,11 @@ class Search {
     critical.order = sweep_.orders[k];
     critical.speed = speed;
     critical.frequency_Hz = to_hz(lambda.imag());
+    // A mode that grows has a bounded steady vibration, as large as if it decayed as fast.
     critical.damping_ratio = std::abs(ratio) > kUndamped ? ratio : 0.0;
     sweep_.criticals.push_back(critical);
     numbers_.push_back(static_cast<int>(k));
-    if (!(ratio > kUndamped)) {
+    if (critical.damping_ratio == 0.0) {
       sweep_.criticals.back().amplitude = unbounded(speed, static_cast<int>(k));
       return;
     }

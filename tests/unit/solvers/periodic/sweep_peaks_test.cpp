@@ -425,3 +425,75 @@ TEST_CASE("Modes and criticals have the stiffness and loss of a coupling under t
     CHECK(sweep.criticals[0].speed == Approx(low).epsilon(0.02));
   }
 }
+
+TEST_CASE("A load that damps, or feeds a mode, between two speeds of the sweep alone counts there",
+          "[sweep_peaks]") {
+  // As above, with kinks at the sweep's own speeds: slopes of -100 N m and back over 50 rpm, between which all speeds show none.
+  constexpr double k = 755.0, damping = 0.1;
+  const double slope = 100.0 / rpm(50.0), natural = std::sqrt(k);
+  Model m("disc");
+  m.add_node("a"), m.add_node("b");
+  m.constant_speed("a", rpm(525.0));
+  m.add<Inertia>("J", {"b"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = k, .damping = damping});
+  m.add<TorqueCurve>("p", {"b"},
+                     {.speeds = {0.0, rpm(500.0), rpm(550.0), rpm(900.0), rpm(950.0), rpm(1200.0)},
+                      .torques = {0.0, 0.0, -100.0, -100.0, 0.0, 0.0}});
+  m.add<EngineOrderTorque>("gas", {"b"}, {.harmonics = {{0.5, 1.0, 0.0}}, .twist_feedback = false});
+  for (const double step : {50.0, 500.0}) {
+    const LinearSweep sweep =
+        sweep_linear(m.build(), {.speeds = rpm_speeds(100.0, step, 1100.0), .orders = {0.5}});
+    const double ratio = 0.5 * (damping + slope) / natural;
+    REQUIRE(sweep.criticals.size() == 1);
+    CHECK(sweep.criticals[0].damping_ratio == Approx(ratio).epsilon(1e-9));
+    CHECK(sweep.growth.rate == Approx(0.5 * (slope - damping)).epsilon(1e-9));
+    CHECK(to_rpm(sweep.growth_speed) == Approx(925.0).margin(26.0));
+  }
+}
+
+TEST_CASE("Peaks of a mode that grows are found in every section, and are those of one that decays as fast",
+          "[sweep_peaks]") {
+  const auto swept = [](double slope) {
+    Model m("three discs");
+    for (const char* node : {"a", "b", "c"}) m.add_node(node);
+    m.set_reference("a", constant_speed(rpm(1000.0)));
+    m.add<Inertia>("J_a", {"a"}, {.inertia = 0.5});
+    m.add<Inertia>("J_b", {"b"}, {.inertia = 0.5});
+    m.add<Inertia>("J_c", {"c"}, {.inertia = 2.0});
+    m.add<ShaftSpring>("s0", {"a", "b"}, {.stiffness = 1000.0});
+    m.add<ShaftSpring>("s1", {"b", "c"}, {.stiffness = 20000.0});
+    m.add<EngineOrderTorque>("gas", {"c"}, {.harmonics = {{2.0, 100.0, 0.0}}, .twist_feedback = false});
+    m.add<TorqueCurve>("p", {"c"}, {.speeds = {0.0, 1000.0}, .torques = {0.0, 1000.0 * slope}});
+    return sweep_linear(m.build(), {.speeds = rpm_speeds(300.0, 300.0, 1500.0), .orders = {2.0}});
+  };
+  const LinearSweep grows = swept(10.0), decays = swept(-10.0);
+  CHECK(grows.growth.rate > 0.0);
+  for (int section = 0; section < 2; ++section) {
+    const SweepLargest here = largest_half_range(grows, section), there = largest_half_range(decays, section);
+    CHECK(here.value == Approx(there.value).epsilon(1e-9));
+    CHECK(to_rpm(here.speed) == Approx(1085.36).epsilon(1e-4));
+  }
+  REQUIRE(grows.criticals.size() == decays.criticals.size());
+  CHECK(grows.criticals[0].damping_ratio == Approx(-decays.criticals[0].damping_ratio).epsilon(1e-6));
+  CHECK(grows.criticals[0].own_amplitude == Approx(decays.criticals[0].own_amplitude).epsilon(1e-6));
+}
+
+TEST_CASE("Loads that cancel but for rounding excite no undamped mode", "[sweep_peaks]") {
+  // Orders of three cylinders at 0, 120 and 240 degrees on one node; order 1, which is left, does not meet the mode.
+  Model m("two discs");
+  m.add_node("a"), m.add_node("b");
+  m.set_reference("a", constant_speed(rpm(1000.0)));
+  m.add<Inertia>("J_a", {"a"}, {.inertia = 1.0});
+  m.add<Inertia>("J_b", {"b"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = 1e4});
+  for (int i = 0; i < 3; ++i)
+    m.add<EngineOrderTorque>("gas_" + std::to_string(i), {"a"},
+                             {.harmonics = {{0.5, 100.0, deg(120.0 * i)}}, .twist_feedback = false});
+  m.add<EngineOrderTorque>("rest", {"a"}, {.harmonics = {{1.0, 10.0, 0.0}}, .twist_feedback = false});
+  const LinearSweep sweep = sweep_linear(
+      m.build(), {.speeds = rpm_speeds(2000.0, 500.0, 3000.0), .orders = {0.5, 1.0}, .threads = 1});
+  CHECK(std::isfinite(largest_half_range(sweep, 0).value));
+  // T = p k / (2 k - w^2) of order 1 at its largest, 2000 rpm.
+  const double w = rpm(2000.0);
+  CHECK(largest_half_range(sweep, 0).value == Approx(1e5 / (w * w - 2e4)).epsilon(1e-10));
+}
