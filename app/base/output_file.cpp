@@ -64,7 +64,7 @@ int open_to_write(const std::string& path, int flags, int access) {
   // Nor may another change what this one has just given its name.
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 || ::lstat(path.c_str(), &named) != 0 ||
       opened.st_ino != named.st_ino)
-    refuse("another process is writing it");
+    refuse("another process, or another output of this command, is writing it");
   return descriptor;
 }
 

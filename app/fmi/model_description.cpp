@@ -5,11 +5,13 @@
 #include <map>
 #include <set>
 
+#include "app/model_file/units.hpp"
+
 namespace drev::app {
 
 namespace {
 
-/// Exponents of SI base units; other units are named without them, as the standard allows.
+/// Exponents of SI base units in the units of channels.
 const std::map<std::string, std::string>& base_units() {
   static const std::map<std::string, std::string> all{{"s", "s=\"1\""},
                                                       {"rad", "rad=\"1\""},
@@ -24,6 +26,28 @@ const std::map<std::string, std::string>& base_units() {
                                                       {"kg m^2", "kg=\"1\" m=\"2\""},
                                                       {"Hz", "s=\"-1\""}};
   return all;
+}
+
+/// The same of a parameter's unit, as keys of a model file spell it ("Nm_per_rad"), with its factor into SI; empty: it is none.
+std::string base_of_key(const std::string& unit) {
+  const auto radians = [](Dimension d) {
+    if (d == Dimension::angle || d == Dimension::angular_speed) return 1;
+    return d == Dimension::torsional_stiffness || d == Dimension::torsional_damping ? -1 : 0;
+  };
+  for (const NamedDimension& d : dimensions())
+    for (const Unit& known : units_of(d.dimension)) {
+      if (unit != known.suffix) continue;
+      const UnitParts parts = unit_parts(unit);
+      std::string text;
+      const auto add = [&](const char* name, double value, double left_out) {
+        if (value != left_out)
+          text += (text.empty() ? "" : " ") + std::string(name) + "=\"" + to_text(value) + "\"";
+      };
+      add("kg", parts.kg, 0.0), add("m", parts.m, 0.0), add("s", parts.s, 0.0);
+      add("rad", radians(d.dimension), 0.0), add("factor", parts.factor, 1.0);
+      return text;
+    }
+  return {};
 }
 
 std::string escaped(const std::string& text) {
@@ -105,9 +129,10 @@ class Description {
       if (v.type == FmuVariable::Type::real && !v.unit.empty()) units.insert(v.unit);
     line("  <UnitDefinitions>");
     for (const std::string& unit : units) {
-      const auto base = base_units().find(unit);
+      const auto known = base_units().find(unit);
+      const std::string base = known == base_units().end() ? base_of_key(unit) : known->second;
       line("    <Unit" + attribute("name", unit) +
-           (base == base_units().end() ? "/>" : "><BaseUnit " + base->second + "/></Unit>"));
+           (base.empty() ? "/>" : "><BaseUnit " + base + "/></Unit>"));
     }
     line("  </UnitDefinitions>");
   }

@@ -38,9 +38,12 @@ std::vector<AskedChannel> asked_channels(const System& system, const std::vector
       continue;
     }
     bool fits = false;
-    const bool energies = asked.ends_with("_W") || asked.ends_with("_J");
-    for (const Channel& channel : energies ? energy_channels(system) : all_channels(system))
-      if (fits_pattern(asked, channel.name())) fits = true, add(channel.name(), asked);
+    const auto add_fitting = [&](const std::vector<Channel>& channels) {
+      for (const Channel& channel : channels)
+        if (fits_pattern(asked, channel.name())) fits = true, add(channel.name(), asked);
+    };
+    if (!asked.ends_with("_W") && !asked.ends_with("_J")) add_fitting(all_channels(system));
+    if (!fits) add_fitting(energy_channels(system));
     if (!fits) add(asked, asked);
   }
   return all;

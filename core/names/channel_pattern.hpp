@@ -17,8 +17,8 @@ struct AskedChannel {
 };
 
 /// In place of each pattern the channels that fit it, in the order of all_channels(); beside patterns every channel is
-/// named once. Energies are meant where the pattern ends as their names do, in _W or _J: "*" is motions and forces. A
-/// pattern that nothing fits stays.
+/// named once. Energies are meant where the pattern ends as their names do, in _W or _J, and where no other channel fits it: "*"
+/// is motions and forces. A pattern that nothing fits stays.
 std::vector<AskedChannel> asked_channels(const System& system, const std::vector<std::string>& names);
 
 }  // namespace drev

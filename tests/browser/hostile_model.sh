@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # hostile_model.sh FILE: writes a model whose 200 nodes have names that a page could take for markup, a program, an
 # address, a pattern or a name of its own; and so have its elements and its texts. A program that runs sets
-# window.ran. (Names hold no full stop, comma, double quote or control character, and in braces an
+# window.ran. (Names hold no full stop, comma, asterisk, double quote or control character, and in braces an
 # expression: a model with others is refused.)
 set -euo pipefail
 attacks=(
   '<img src=x onerror=ran=1>' '<script>ran=1</script>' '</script><script>ran=1</script>' '<svg onload=ran=1>'
   '<svg><script>ran=1</script></svg>' '<iframe srcdoc="&lt;script>parent;ran=1&lt;/script>">'
   '<details open ontoggle=ran=1>' '<body onload=ran=1>' '<input autofocus onfocus=ran=1>' '<a href=javascript:ran=1>a</a>'
-  '<style>*</style>' '<link rel=stylesheet href=x>' '<base href=x>' '<form action=x><button>'
+  '<style>@import url(x)</style>' '<link rel=stylesheet href=x>' '<base href=x>' '<form action=x><button>'
   '<meta http-equiv=refresh content=0>' '<math><mtext><img src=x onerror=ran=1>' '<!--<script>' '--><b>'
   'javascript:ran=1' '`ran=1`' '<embed src=x>' 'hasOwnProperty' '__proto__' 'constructor' '&lt;script&gt;ran=1&lt;/script&gt;'
 )

@@ -174,6 +174,9 @@ def parameters():
     """Parameters as --set gives them; what cannot be is refused with drev's finding and changes nothing."""
     name, channels = model("camshaft_with_gear_drive"), ["end.angle_rad", "mesh_2.force_N"]
     fmu = Fmu(export(name, "cam_wide", "--set", "engine_rpm=700", "--record", ",".join(channels)))
+    units = {unit.name: unit.baseUnit for unit in fmu.description.unitDefinitions}
+    assert (units["mm"].m, units["mm"].factor) == (1, 1e-3)
+    assert (units["rpm"].rad, units["rpm"].s) == (1, -1) and abs(units["rpm"].factor - 0.10471975511965977) < 1e-16
     expected = run(DREV, name, channels, 0.01, 1e-3, os.path.join(FOLDER, "run_wide"),
                    ["--set", "engine_rpm=700", "--set", "backlash_mm=0.4"])
     found = simulate(fmu, channels, 0.01, 1e-3, values={"backlash_mm": 0.4})

@@ -22,10 +22,16 @@ const TINTS = ["--c0", "--c1", "--c2", "--c4", "--quiet"];
 /// Amplitudes of an order over the speeds.
 const orderOf = (s, k) => s.amplitude.subarray(k * sweep.speeds_rpm.length, (k + 1) * sweep.speeds_rpm.length);
 
-/// The orders with the largest amplitudes, largest first.
+/// The criticals in a section whose order has an amplitude there.
+const criticalsIn = (s) => sweep.criticals.filter((c) => c.section === s.name && c.amplitude !== null);
+
+/// The orders with the largest amplitudes at the speeds and the criticals, largest first.
 const chiefOrders = (s) =>
   sweep.orders
-    .map((order, k) => ({ order, k, most: largest(orderOf(s, k)) }))
+    .map((order, k) => {
+      const between = criticalsIn(s).filter((c) => c.order === order);
+      return { order, k, most: Math.max(largest(orderOf(s, k)), ...between.map((c) => c.amplitude)) };
+    })
     .filter(({ most }) => most > 0)
     .sort((a, b) => b.most - a.most)
     .slice(0, NAMED_ORDERS);
@@ -121,6 +127,7 @@ function sectionChart(parent, group, s, index) {
       look: { strokeWidth: 1.6, strokePattern: [[8, 4], [2, 3], [9, 3, 2, 3]][i % 3] },
     })),
     ...chief.map(({ order, k }, i) => ({
+      order,
       label: `order ${orderText(order)}`,
       values: orderOf(s, k),
       color: TINTS[i % TINTS.length],
@@ -149,14 +156,24 @@ function sectionChart(parent, group, s, index) {
       farAbove,
     ),
     rows: () => {
-      const rows = Array.from(sweep.speeds_rpm, (speed, i) => [
-        speed,
-        ...curves.map(({ values }) => (Number.isFinite(values[i]) ? values[i] * readable.factor : null)),
-      ]);
-      for (const peak of s.peaks) // peaks between the speeds are known for the half range only
-        if (peak.half_range !== null && !sweep.speeds_rpm.includes(peak.speed_rpm))
-          rows.push([peak.speed_rpm, peak.half_range * readable.factor, ...curves.slice(1).map(() => null)]);
-      return { sparse: true, rows: rows.sort((a, b) => a[0] - b[0]) };
+      const rows = new Map();
+      for (const [i, speed] of sweep.speeds_rpm.entries())
+        rows.set(speed, [
+          speed,
+          ...curves.map(({ values }) => (Number.isFinite(values[i]) ? values[i] * readable.factor : null)),
+        ]);
+      // Between the speeds the half range is known at its peaks, an order at its criticals.
+      const put = (speed, column, value) => {
+        if (sweep.speeds_rpm.includes(speed) || value === null || column === 0) return;
+        if (!rows.has(speed)) rows.set(speed, [speed, ...curves.map(() => null)]);
+        rows.get(speed)[column] = value * readable.factor;
+      };
+      for (const peak of s.peaks) put(peak.speed_rpm, 1, peak.half_range);
+      for (const c of criticalsIn(s)) {
+        put(c.speed_rpm, 1, c.half_range);
+        put(c.speed_rpm, 1 + curves.findIndex(({ order }) => order === c.order), c.amplitude);
+      }
+      return { sparse: true, rows: [...rows.values()].sort((a, b) => a[0] - b[0]) };
     },
     underlay: (context, area, g) => {
       const text = new Labels(context, area);
@@ -319,8 +336,8 @@ function showDiagram() {
   chart.section = "campbell";
   section.append(
     table(
-      ["mode", `frequency at ${sig(whole[1], 5)} rpm [Hz]`, "damping ratio"],
-      c.modes.map((m) => [m.mode, sig(modeAt(m, whole[1]), 6), sig(m.damping_ratio.at(-1), 3)]),
+      ["mode", `frequency at ${sig(span[1], 5)} rpm [Hz]`, "damping ratio"],
+      c.modes.map((m) => [m.mode, sig(modeAt(m, span[1]), 6), sig(m.damping_ratio.at(-1), 3)]),
     ),
   );
 }

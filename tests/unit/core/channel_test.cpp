@@ -342,6 +342,7 @@ TEST_CASE("A pattern stands for every channel that fits it, each once, in the or
   CHECK(names({"pump.angle_rad", "*.angle_rad", "shaft.*Nm"}) ==
         "pump.angle_rad motor.angle_rad shaft.torque_Nm ");
   CHECK(names({"*.stored_J", "sh*.dissip*_J"}) == "shaft.stored_J shaft.dissipated_J ");
+  CHECK(names({"shaft.dissip*"}) == "shaft.dissipation_W shaft.dissipated_J ");  // no other channel fits
   CHECK(find_channels(s, {"*"}).size() == all_channels(s).size());
   CHECK(find_channel(s, "shaft.torque*").name() == "shaft.torque_Nm");
   const auto message = [&](const std::vector<std::string>& asked) -> std::string {
