@@ -1,11 +1,10 @@
 #include "app/fmi/model_description.hpp"
 
+#include <drev/app/model_file/units.hpp>
 #include <drev/core/version.hpp>
 
 #include <map>
 #include <set>
-
-#include "app/model_file/units.hpp"
 
 namespace drev::app {
 
