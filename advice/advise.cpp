@@ -1,5 +1,6 @@
 #include <drev/advice/advise.hpp>
 #include <drev/core/units.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "advice/evidence.hpp"
 #include "advice/recipe.hpp"
 #include "advice/simplify.hpp"
+#include "core/names/rounded_text.hpp"
 #include "models/figure_span.hpp"
 
 namespace drev {
@@ -42,6 +44,7 @@ class Ladder {
     advice_ = {.figure = options_.figure,
                .unit = find_channels(full_, figure_.channels).front().unit(),
                .within = options_.within};
+    note_start();
     const std::vector<Level> levels = find_levels();
     measure_full(levels.front());
     std::vector<std::vector<Rung>> tried;
@@ -191,6 +194,21 @@ class Ladder {
       }
       finer = holds;
     }
+  }
+
+  /// A figure of the steady state that still holds a part of the start.
+  void note_start() {
+    if (figure_.from == 0.0 || model_case_.start == Start::periodic) return;
+    const Settling settling = settling_time(full_);
+    if (settling.time <= figure_.from) return;
+    advice_.notes.push_back(
+        std::string(std::isfinite(settling.time) ? "The full model's run has not settled"
+                                                 : "The full model's run is not known to settle") +
+        " at " + rounded_text(figure_.from, 6) + " s, from where the figure counts: " + settling.reason +
+        ". The figure holds what is left of the start, and a periodic steady state that differs from it may "
+        "be the "
+        "right one. A longer run, or one that starts there ([run] start = \"periodic\"), gives the steady "
+        "figure.");
   }
 
   void measure_full(const Level& level) {

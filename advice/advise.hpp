@@ -56,6 +56,8 @@ struct Advice {
   std::vector<Rung> rungs = {};  ///< every one tried, cheap levels first; the full model is the last
   std::size_t chosen = 0;        ///< the cheapest that holds
   std::string sentence = {};
+  /// Sentences on the full model's figure: of a steady one, that its run has not settled where it begins.
+  std::vector<std::string> notes = {};
   const Rung& best() const { return rungs[chosen]; }
   const Rung& full() const { return rungs.back(); }
 };

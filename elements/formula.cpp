@@ -125,50 +125,60 @@ Ranged Formula::over(std::span<const Ranged> variables) const { return evaluate(
 
 std::string Formula::text(std::span<const std::string> names) const {
   if (steps_.empty()) return "0";
-  std::vector<std::string> parts(steps_.size());
-  const auto call = [](const char* name, const std::string& of) {
-    return std::string(name) + "(" + of + ")";
+  /// How tightly a part holds together: only what is read back in another order otherwise stands in parentheses.
+  enum Tightness { sum, product, sign, power, item };
+  struct Part {
+    std::string text;
+    Tightness tightness = item;
   };
+  std::vector<Part> parts(steps_.size());
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     const Step& s = steps_[i];
-    const std::string a = s.a >= 0 && s.op != Op::variable ? parts[static_cast<std::size_t>(s.a)] : "";
-    const std::string b = s.b >= 0 ? parts[static_cast<std::size_t>(s.b)] : "";
+    const auto part = [&](int step, Tightness least) {
+      const Part& p = parts[static_cast<std::size_t>(step)];
+      return p.tightness >= least ? p.text : "(" + p.text + ")";
+    };
+    const auto call = [&](const char* name) {
+      return Part{std::string(name) + "(" + part(s.a, sum) + (binary(s.op) ? ", " + part(s.b, sum) : "") +
+                  ")"};
+    };
     switch (s.op) {
       case Op::constant:
-        parts[i] = s.value < 0.0 ? "(" + digits(s.value) + ")" : digits(s.value);
+        parts[i] = {digits(s.value), s.value < 0.0 ? sign : item};
         break;
       case Op::variable:
-        parts[i] = static_cast<std::size_t>(s.a) < names.size() ? names[static_cast<std::size_t>(s.a)] : "0";
+        parts[i] = {static_cast<std::size_t>(s.a) < names.size() ? names[static_cast<std::size_t>(s.a)]
+                                                                 : "0"};
         break;
       case Op::add:
-        parts[i] = "(" + a + " + " + b + ")";
+        parts[i] = {part(s.a, sum) + " + " + part(s.b, product), sum};
         break;
       case Op::subtract:
-        parts[i] = "(" + a + " - " + b + ")";
+        parts[i] = {part(s.a, sum) + " - " + part(s.b, product), sum};
         break;
       case Op::multiply:
-        parts[i] = a + " * " + b;
+        parts[i] = {part(s.a, product) + " * " + part(s.b, sign), product};
         break;
       case Op::divide:
-        parts[i] = "(" + a + " / (" + b + "))";
+        parts[i] = {part(s.a, product) + " / " + part(s.b, sign), product};
         break;
       case Op::smaller:
-        parts[i] = call("min", a + ", " + b);
+        parts[i] = call("min");
         break;
       case Op::larger:
-        parts[i] = call("max", a + ", " + b);
+        parts[i] = call("max");
         break;
       case Op::negate:
-        parts[i] = "(-" + a + ")";
+        parts[i] = {"-" + part(s.a, power), sign};
         break;
       case Op::power:
-        parts[i] = "((" + a + ")^(" + digits(s.value) + "))";
+        parts[i] = {part(s.a, item) + "^" + digits(s.value), power};
         break;
       default:
-        parts[i] = call(function_of(s.op).name, a);
+        parts[i] = call(function_of(s.op).name);
     }
   }
-  return parts.back();
+  return parts.back().text;
 }
 
 }  // namespace drev

@@ -65,6 +65,7 @@ std::string as_text(const AdviseRequest& request, const Advice& advice) {
     text += rung_row(advice.rungs[i], width, i == advice.chosen);
   text += "\n" + wrap(advice.sentence, 0);
   if (!advice.best().evidence.empty()) text += "\nEvidence: " + wrap(advice.best().evidence + ".", 10);
+  for (const std::string& note : advice.notes) text += "\n" + wrap(note, 0);
   if (!request.model.model_case.note.empty()) text += "\n" + wrap(request.model.model_case.note, 0);
   return text;
 }
@@ -98,6 +99,7 @@ Json as_json(const AdviseRequest& request, const Advice& advice) {
   }
   object["chosen"] = advice.best().name;
   object["advice"] = advice.sentence;
+  object["notes"] = advice.notes;
   object["note"] = text_or_null(request.model.model_case.note);
   return object;
 }

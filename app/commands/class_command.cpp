@@ -132,6 +132,7 @@ int class_command(const CommandLine& line) {
       const System& system = c.request.model.system;
       c.sweep = sweep_linear(system, c.request.options);
       c.notes = sweep_notes(c.request, c.sweep);
+      if (!c.sweep.modes_note.empty()) c.notes.push_back("Criticals: " + c.sweep.modes_note + ".");
       c.judgement = judge_sweep(c.sweep, *strength, sweep_between(system, c.request.options));
     }
   }

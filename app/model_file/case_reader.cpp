@@ -150,7 +150,12 @@ class CaseReader {
               const std::string& name) {
     const auto same = parts.find(name);
     if (same == parts.end()) return true;
-    refuse(entry.at, where, "the name " + name + " is used twice; first in " + same->second.at.text());
+    const bool files = entry.at.file && same->second.at.file && *entry.at.file != *same->second.at.file;
+    refuse(entry.at, where,
+           "the name " + name + " is used twice; first in " + same->second.at.text() +
+               (files ? "; names that a [[repeat]] makes, or files beside each other have, are not laid over "
+                        "each other"
+                      : ""));
     return false;
   }
 

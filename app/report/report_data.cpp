@@ -102,8 +102,7 @@ Json speeds_object(const System& system, const OrderTracks& tracks, double end) 
     speeds.push_back(to_rpm(speed));
   };
   if (tracks.shaft.empty())
-    for (int i = 0; i <= kPoints; ++i)
-      add(end * i / kPoints, std::abs(system.reference()->at(end * i / kPoints).rate));
+    for (int i = 0; i <= kPoints; ++i) add(end * i / kPoints, system.reference()->at(end * i / kPoints).rate);
   else
     for (std::size_t w = 0; w < tracks.time.size(); ++w) add(tracks.time[w], tracks.speed[w]);
   return {

@@ -145,6 +145,9 @@ std::string part_of_speeds(const std::vector<double>& part, std::size_t all) {
 /// Limits that are given but could not be judged: sentences with part, quantity, speeds and reason.
 std::vector<std::string> undecided_texts(const ClassCase& c) {
   std::vector<std::string> texts;
+  if (c.judgement.unstable)
+    texts.push_back("No limit is known to be kept: the train is unstable (" + c.sweep.growth.text() +
+                    "), and no run settles on the vibration that is judged.");
   const std::vector<double>& without = c.judgement.without_motion;
   const std::size_t answered = c.sweep.speeds.size();
   if (!without.empty())

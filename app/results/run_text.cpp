@@ -95,9 +95,9 @@ std::string span_row(const RunResult& r) {
 std::string run_up_rows(const SpeedsPassed& up) {
   constexpr std::size_t kCriticalsShown = 5;
   std::string text = speed_text(up.range.first) + " to " + speed_text(up.range.last);
-  if (up.range.slowest < std::min(up.range.first, up.range.last) ||
-      up.range.fastest > std::max(up.range.first, up.range.last))
-    text += ", between " + speed_text(up.range.slowest) + " and " + speed_text(up.range.fastest);
+  if (up.range.lowest < std::min(up.range.first, up.range.last) ||
+      up.range.highest > std::max(up.range.first, up.range.last))
+    text += ", between " + speed_text(up.range.lowest) + " and " + speed_text(up.range.highest);
   if (!up.orders.shaft.empty()) text += ", actual mean speeds of " + up.orders.shaft;
   text = labelled("Run-up", text);
   std::vector<std::string> criticals;

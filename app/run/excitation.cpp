@@ -198,17 +198,23 @@ std::vector<std::string> driven_nodes(const System& system) {
   return names;
 }
 
+SpeedRange range_of_speeds(const std::vector<double>& speeds) {
+  const auto [lowest, highest] = std::minmax_element(speeds.begin(), speeds.end());
+  const bool through_zero = *lowest < 0.0 && *highest > 0.0;
+  return {.slowest = through_zero ? 0.0 : std::min(std::abs(*lowest), std::abs(*highest)),
+          .fastest = std::max(std::abs(*lowest), std::abs(*highest)),
+          .first = speeds.front(),
+          .last = speeds.back(),
+          .lowest = *lowest,
+          .highest = *highest};
+}
+
 SpeedRange speed_range(const System& system, double duration) {
   const auto& reference = system.reference();
   if (!reference || !reference->at) return {};
-  const auto speed = [&](double t) { return std::abs(reference->at(t).rate); };
-  SpeedRange range{HUGE_VAL, 0.0, speed(0.0), speed(duration)};
-  for (int i = 0; i <= kSpeedSamples; ++i) {
-    const double here = speed(duration * i / kSpeedSamples);
-    range.slowest = std::min(range.slowest, here);
-    range.fastest = std::max(range.fastest, here);
-  }
-  return range;
+  std::vector<double> speeds;
+  for (int i = 0; i <= kSpeedSamples; ++i) speeds.push_back(reference->at(duration * i / kSpeedSamples).rate);
+  return range_of_speeds(speeds);
 }
 
 std::vector<double> chief_orders(const std::vector<Crossing>& crossings, const SpeedRange& range) {

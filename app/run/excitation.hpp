@@ -39,12 +39,14 @@ std::string reference_node(const Model& model);
 /// "of gear, the reference shaft", what speeds are of.
 std::string of_reference(const Model& model);
 
-/// Of the reference shaft over the run [rad/s], without sign; zeros where none turns.
+/// Of the reference shaft over the run [rad/s]; zeros where none turns.
 struct SpeedRange {
-  double slowest = 0.0, fastest = 0.0;
-  double first = 0.0, last = 0.0;
+  double slowest = 0.0, fastest = 0.0;                          ///< in either sense, without sign
+  double first = 0.0, last = 0.0, lowest = 0.0, highest = 0.0;  ///< with sign
   bool changes() const { return fastest > slowest * (1.0 + 1e-9); }
 };
+/// Of these speeds, one after the other, at least one [rad/s].
+SpeedRange range_of_speeds(const std::vector<double>& speeds);
 SpeedRange speed_range(const System& system, double duration);
 
 struct Excitation {

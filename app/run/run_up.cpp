@@ -47,7 +47,7 @@ RunUpWatch::RunUpWatch(const System& full, const ModeSet* modes, const System& s
   const bool actual = shaft.turned.has_value();
   const System& turning = actual ? *shaft.turned : full;
   SpeedRange range = found_.range = speed_range(full, duration);
-  if (actual) range = {0.0, HUGE_VAL, kTurning, kTurning};  // not known yet
+  if (actual) range = {.slowest = 0.0, .fastest = HUGE_VAL};  // not known yet
   std::vector<double> orders;
   if (modes != nullptr) {
     Excitation excitation = find_excitation(turning, *modes, range);
@@ -91,11 +91,10 @@ std::optional<SpeedsPassed> RunUpWatch::result() const {
   result.orders = tracking_->tracks();
   if (waterfall_) result.waterfall = waterfall_->tracks();
   if (!result.orders.shaft.empty()) {
-    const std::vector<double>& speeds = result.orders.speed;
+    std::vector<double> speeds = result.orders.speed;
     if (speeds.size() < 2) return std::nullopt;
-    const double first = result.orders.first_speed;
-    result.range = {std::min(first, *std::min_element(speeds.begin(), speeds.end())),
-                    std::max(first, *std::max_element(speeds.begin(), speeds.end())), first, speeds.back()};
+    speeds.insert(speeds.begin(), result.orders.first_speed);
+    result.range = range_of_speeds(speeds);
   }
   for (const Crossing& c : crossings_)
     if (c.speed >= result.range.slowest && c.speed <= result.range.fastest &&

@@ -111,7 +111,7 @@ void OrderTracking::start(const Assembler& assembler, const EvaluatedState& poin
   const auto [angle, rate] = turning(assembler, point);
   sense_ = rate < 0.0 ? -1.0 : rate > 0.0 || node_ < 0 ? 1.0 : 0.0;
   turned_ = sense_ * angle;
-  tracks_.first_speed = std::abs(rate);
+  tracks_.first_speed = rate;
   first_angle_ = angle;
   first_time_ = point.state.t;
   way_ = 0.0;
@@ -222,7 +222,7 @@ void OrderTracking::close(const Window& window) {
   const double weights = window.moments[0];
   if (window.reverses || !(weights > 0.0) || !(window.time > 0.0)) return;
   tracks_.time.push_back(window.moment / window.time);
-  tracks_.speed.push_back(weights / window.time);
+  tracks_.speed.push_back((node_ < 0 ? way_ : sense_) * weights / window.time);
   for (std::size_t k = 0; k < turns_.size(); ++k)
     for (const std::size_t terms : {kMean, kParabola}) fit(window, k, terms);
   if (tracks_.time.size() > kMostWindows) thin();

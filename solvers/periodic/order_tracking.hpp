@@ -43,8 +43,9 @@ struct OrderTracks {
   std::string shaft;  ///< node whose actual angle is phi; empty: nominal angle of the reference shaft
   std::vector<double> orders;  ///< orders per turn of phi
   std::vector<double> time;    ///< middle of each complete window [s]
-  std::vector<double> speed;   ///< mean of phi' over each window, with the window's weights [rad/s]
-  double first_speed = 0.0;    ///< phi' at the start of the run [rad/s]
+  std::vector<double>
+      speed;  ///< mean of phi' over each window, with its sign and the window's weights [rad/s]
+  double first_speed = 0.0;  ///< phi' at the start of the run [rad/s]
   /// Amplitudes A_o in the channel's unit: [channel][order][window].
   std::vector<std::vector<std::vector<double>>> amplitude;
   std::vector<std::vector<std::vector<double>>> phase;  ///< phases p_o [rad], -pi to pi

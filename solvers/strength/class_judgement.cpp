@@ -222,7 +222,7 @@ ClassJudgement::Verdict ClassJudgement::verdict() const {
                   [](const auto& s) { return !s.exceeded.empty() || s.heat_exceeds(); }))
     return Verdict::exceeded;
   const bool undecided =
-      !without_motion.empty() || std::any_of(sections.begin(), sections.end(), [](const auto& s) {
+      unstable || !without_motion.empty() || std::any_of(sections.begin(), sections.end(), [](const auto& s) {
         return s.heat_undecided() || s.torque_undecided();
       });
   return undecided ? Verdict::undecided : Verdict::within;
@@ -337,6 +337,7 @@ ClassJudgement judge_sweep(const LinearSweep& sweep, const Strength& strength, c
   if (sweep_at) add_tops(curves, sweep_at);
   find_exceeded_ranges(curves, sweep_at);
   ClassJudgement found;
+  found.unstable = sweep.growth.rate > 0.0;
   std::vector<bool> judged(sweep.sections.size(), false);
   for (const LimitedCurve& curve : curves) {
     if (curve.strength < 0) {

@@ -107,11 +107,13 @@ struct ClassJudgement {
   std::vector<std::string> not_judged;  ///< names of the sections of the sweep without a limit
   /// Speeds asked for at which no motion is known, so that they are not in the sweep [rad/s]: none, unless who asked states them.
   std::vector<double> without_motion;
+  bool unstable =
+      false;  ///< a mode grows at some of the speeds (LinearSweep::growth): no run settles on what is judged
   /// Of the limits in continuous running, of torque and of heat.
   enum class Verdict {
-    within,     ///< all that are given are kept at all speeds
-    exceeded,   ///< at least one is exceeded
-    undecided,  ///< none is known to be exceeded, but one could not be judged at some of the speeds
+    within,    ///< all that are given are kept at all speeds
+    exceeded,  ///< at least one is exceeded
+    undecided,  ///< none is known to be exceeded, but one could not be judged at some of the speeds, or the train is unstable
   };
   Verdict verdict() const;
   bool accepted() const { return verdict() == Verdict::within; }

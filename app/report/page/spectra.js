@@ -270,12 +270,13 @@ function showOrders(section, run) {
       }),
       underlay: (context, area, g) => {
         const text = new Labels(context, area);
-        for (const c of up.criticals.slice(0, 6)) {
-          const x = g.toDomXCoord(c.speed_rpm);
-          if (x < area.x || x > area.x + area.w) continue;
-          line(context, x, area.y, x, area.y + area.h, style("--line"), [2, 3]);
-          text.put(orderText(c.order), x + 3, area.y + 12, style("--ink"));
-        }
+        for (const c of up.criticals.slice(0, 6))
+          for (const speed of [c.speed_rpm, -c.speed_rpm]) {
+            const x = g.toDomXCoord(speed);
+            if (x < area.x || x > area.x + area.w) continue;
+            line(context, x, area.y, x, area.y + area.h, style("--line"), [2, 3]);
+            text.put(orderText(c.order), x + 3, area.y + 12, style("--ink"));
+          }
       },
     });
     chart.channel = channel.name;
@@ -347,15 +348,15 @@ function showWaterfall(section, run, group, places) {
         const [low, high] = g.xAxisRange();
         for (const mode of run.modes)
           for (let i = 0; i < 40; ++i) {
-            const [a, b] = [i, i + 0.6].map((part) => Math.max(low + ((high - low) * part) / 40, 1e-9));
-            const at = (rpm) => (60 * mode.frequency_Hz) / rpm;
-            if (at(b) > highest) continue;
+            const [a, b] = [i, i + 0.6].map((part) => low + ((high - low) * part) / 40);
+            const at = (rpm) => (60 * mode.frequency_Hz) / Math.abs(rpm);
+            if (Math.min(at(a), at(b)) > highest) continue;
             line(
               context,
               g.toDomXCoord(a),
               g.toDomYCoord(Math.min(at(a), highest)),
               g.toDomXCoord(b),
-              g.toDomYCoord(at(b)),
+              g.toDomYCoord(Math.min(at(b), highest)),
               style("--line"),
               [],
             );

@@ -287,6 +287,27 @@ std::string two_discs(const drev::test::TemporaryFolder& folder, const char* nam
 
 }  // namespace
 
+TEST_CASE("A judgement says that the train is unstable, and what is not known of its criticals", "[class]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string page = (folder / "page.html").string();
+  const std::string file = two_discs(folder, "grows.toml", "", "permissible_torque_Nm = 1e6");
+  std::ofstream(file, std::ios::app)
+      << "[elements.soft]\ntype = \"elastic_coupling\"\nnodes = [\"a\", \"b\"]\nlowest_frequency_Hz = 5\n"
+         "highest_frequency_Hz = 50\nby_amplitude = { amplitude_rad = [0, 0.1], "
+         "stiffness_Nm_per_rad = [10, 9], loss_factor = [0.1, 0.1] }\n"
+         "[elements.drive]\ntype = \"torque_function\"\nnode = \"a\"\nexpression = \"speed_rad_per_s\"\n";
+  const std::vector<std::string> words{"class", file, "--speeds", "1200:50:1500", "--report", page};
+  const nlohmann::json one = class_json_of(words)["cases"][0];
+  CHECK(one.at("accepted").is_null());
+  CHECK(contains(drev_command(words).out, "NOT DECIDED"));
+  CHECK(contains(one.at("undecided")[0], "the train is unstable (a mode at 14.5"));
+  CHECK(contains(one.at("notes").dump(),
+                 "Criticals: modes, and where orders meet them, have the stiffness of soft"));
+  const nlohmann::json shown = page_of(page);
+  CHECK(shown.at("class")["cases"][0] == one);
+  CHECK(shown.at("notes") == one.at("notes"));
+}
+
 TEST_CASE("A coarse grid gives the verdict of a fine one: heat at its peak", "[class]") {
   const drev::test::TemporaryFolder folder;
   const std::string file = two_discs(folder, "two.toml", ", damping_Nms_per_rad = 5",

@@ -430,3 +430,20 @@ TEST_CASE("Advice is of the figures that a run has: from its start, and settled"
     CHECK(value == Approx(run_of(model).json["results"]["max_torque_Nm"].get<double>()).epsilon(1e-3));
   }
 }
+
+TEST_CASE("Advice on a steady figure says that the full model's run has not settled where it begins",
+          "[once]") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "m.toml").string();
+  const auto advice = [&](const char* damping, std::vector<std::string> words) {
+    std::ofstream(path) << disc(damping, "");
+    words.insert(words.begin(), {"advise", path, "--for", "steady peak torque"});
+    return drev_command(words).out;
+  };
+  CHECK(Json::parse(advice("8", {"--json"})).at("notes").empty());  // ln(1e3) 2 J/c = 3.454 s
+  const Json notes = Json::parse(advice("4", {"--json"})).at("notes");
+  REQUIRE(notes.size() == 1);
+  CHECK(contains(notes[0], "has not settled at 4 s"));
+  CHECK(contains(notes[0], "after 6.908 s"));
+  CHECK(contains(unwrapped(advice("4", {})), notes[0].get<std::string>()));
+}

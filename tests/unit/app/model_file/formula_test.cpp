@@ -80,6 +80,20 @@ TEST_CASE("A formula is what the grammar gives for numbers, with its slopes") {
   CHECK(at("angle_deg", kPi, w, t).value == Approx(180.0));
 }
 
+TEST_CASE("A formula written as text is read back with its operations in their order") {
+  const std::array<std::string, 3> names{"angle_rad", "speed_rad_per_s", "time_s"};
+  std::string long_one = "time_s";
+  for (int i = 0; i < 40; ++i) long_one += i % 2 == 0 ? "*(angle_rad*3)" : "/(speed_rad_per_s/time_s)";
+  for (const std::string& text :
+       {std::string("-0.1*speed_rpm"), std::string("angle_rad*(speed_rpm/(time_s*3)) - (angle_rad - time_s)"),
+        std::string("-(angle_rad*speed_rpm)^-1.3*(-time_s)^2 - -time_s"), long_one}) {
+    const Formula first = compiled(text);
+    INFO(first.text(names));
+    for (double x = 0.1; x < 3.0; x += 0.1)
+      CHECK(at(first.text(names), x, 70.0 + x, 1.7).value == at(text, x, 70.0 + x, 1.7).value);
+  }
+}
+
 TEST_CASE("Variables are plain where that makes a whole, else they have their unit") {
   const double w = rpm(750.0);
   CHECK(at("-0.02*speed_rpm^2 + angle_deg", 0.0, w, 0.0).value == Approx(-0.02 * 750.0 * 750.0));

@@ -91,6 +91,10 @@ TEST_CASE("Nodes and elements of a base file are changed key by key, or replaced
             "[elements]\nshaft = { type = \"ground_spring\", node = \"b\", stiffness_Nm_per_rad = 9 }\n") ==
         9.0);
   CHECK(diagonal("", "held") == 70.0);
+  CHECK_THROWS_WITH(
+      case_of(folder, std::string(kInclude) + "[elements]\nstop_2 = { friction_Nm = 1 }\n"),
+      Catch::Contains("base.toml:19") &&
+          Catch::Contains("names that a [[repeat]] makes, or files beside each other have, are not laid"));
   const ModelCase turned =
       case_of(folder, std::string(kInclude) + "[nodes]\na = { initial_angle_rad = 0.5 }\n");
   const System system = turned.model.build();

@@ -156,5 +156,9 @@ TEST_CASE("A load whose orders are not known is named instead of having none") {
   CHECK(up.at("run_up").at("criticals").empty());
   CHECK(test::contains(test::drev_command({"run", path}).out, "Criticals passed        none known"));
   CHECK(write("1200").at("notes").empty());
+  CHECK(write("-1300").at("run_up").at("slowest_rpm") == 0.0);
+  CHECK(test::contains(test::drev_command({"run", path}).out,
+                       "Run-up                  -1300.0 rpm to 1200.0 rpm\n"));
+  write("1200");
   CHECK(test::contains(test::read_file(folder / "r.html"), "\"unknown\":[\"pump\"]"));
 }
