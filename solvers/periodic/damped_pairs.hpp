@@ -57,6 +57,7 @@ class DampedPairs {
 struct DampedPoles {
   DampedPairs pairs;
   std::function<ModeMatrices(double speed, double omega)> matrices;
+  std::vector<double> jumps = {};  ///< speeds on both sides of those at which a load's slope or size jumps
   std::vector<Eigen::VectorXcd> lambda = {};  ///< of modes that coincide all; 0: not known
   std::vector<Eigen::MatrixXcd> shapes = {};  ///< over the unknowns
   /// A mode at a speed with the matrices there, from the nearest of the modes' speeds, at which it oscillates. Where no mode is found

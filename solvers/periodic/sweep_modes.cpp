@@ -133,67 +133,149 @@ class HiddenSlopes {
   std::vector<double> found_;
 };
 
-/// The speeds at which the modes are found: the middle one where at all of the sweep's speeds each load damps alike and the mean
-/// torque leaves each stiffness as it is; else kModeSpeeds of equal distance, and of the sweep's speeds, and of those between them at which a load is steeper, those between which that bends.
-Vector speeds_of_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds) {
-  const double low = speeds.front(), high = speeds.back();
-  const Vector middle = Vector::Constant(1, 0.5 * (low + high));
-  if ((!response.content().follows_speed() && !response.follows_mean_torque()) || speeds.size() < 2)
-    return middle;
-  std::map<double, bool> wanted;
-  for (int i = 0; i < kModeSpeeds; ++i) wanted[low + (high - low) * i / (kModeSpeeds - 1)] = true;
-  for (const double speed : speeds) {
-    const auto near = wanted.lower_bound((1.0 - kOneSpeed) * speed);
-    if (near == wanted.end() || near->first > (1.0 + kOneSpeed) * speed) wanted[speed] = false;
+/// The speeds at which the modes are found, and those between which something jumps.
+class ModeSpeeds {
+ public:
+  ModeSpeeds(const System& system, LinearResponse& response, const std::vector<double>& speeds)
+      : system_(system),
+        response_(response),
+        content_(system, {}, none_),
+        low_(speeds.front()),
+        high_(speeds.back()) {
+    if ((!response.content().follows_speed() && !response.follows_mean_torque()) || speeds.size() < 2) return;
+    for (int i = 0; i < kModeSpeeds; ++i) at_[low_ + (high_ - low_) * i / (kModeSpeeds - 1)] = true;
+    const auto add = [&](double speed) {
+      const auto near = at_.lower_bound((1.0 - kOneSpeed) * speed);
+      if (near == at_.end() || near->first > (1.0 + kOneSpeed) * speed) at_[speed] = false;
+    };
+    for (const double speed : speeds) add(speed);
+    if (response.follows_mean_torque())
+      for (int i = 1; i < kTorqueSpeeds; ++i) add(low_ + (high_ - low_) * i / kTorqueSpeeds);
+    std::vector<double> known;
+    for (const auto& [speed, take] : at_) known.push_back(speed);
+    for (const LoadTerm* load : content_.loads())
+      for (const double speed :
+           HiddenSlopes(*load, response.direction() * system.ratio(load->node)).find(known))
+        at_.emplace(speed, false);
+    find_values();
+    find_jumps();
+    for (const double speed : jumps_) at_.emplace(speed, false);
+    if (!jumps_.empty()) find_values();
   }
-  std::vector<Finding> none;
-  OrderContent content(system, {}, none);
-  std::vector<double> known;
-  for (const auto& [speed, take] : wanted) known.push_back(speed);
-  for (const LoadTerm* load : content.loads())
-    for (const double speed :
-         HiddenSlopes(*load, response.direction() * system.ratio(load->node)).find(known))
-      wanted.emplace(speed, false);
-  std::vector<double> at;
-  std::vector<char> taken;
-  // Of loads their damping, relative to the largest; of stiffnesses what they are beyond their matrices, relative to these.
-  const auto loads = static_cast<Eigen::Index>(content.loads().size()),
-             stiffnesses = static_cast<Eigen::Index>(system.frequency_terms().size());
-  Eigen::MatrixXd values(loads + stiffnesses, static_cast<Eigen::Index>(wanted.size()));
-  for (const auto& [speed, take] : wanted) {
-    const auto column = static_cast<Eigen::Index>(at.size());
-    Eigen::Index row = 0;
-    for (const OrderContent::Content& here : content.at(response.direction() * speed))
-      values(row++, column) = here.speed_slope;
-    for (std::size_t t = 0; row < values.rows(); ++t)
-      values(row++, column) = response.mode_stiffness(t, speed, high).real() /
-                              system.frequency_terms()[t].stiffness->static_stiffness();
-    at.push_back(speed), taken.push_back(take);
-  }
-  if (const double largest = loads > 0 ? values.topRows(loads).cwiseAbs().maxCoeff() : 0.0; largest > 0.0)
-    values.topRows(loads) /= largest;
-  if (!((values.colwise() - values.col(0)).cwiseAbs().maxCoeff() > kSameValue)) return middle;
-  for (int count = kModeSpeeds; count < kMostModeSpeeds; ++count) {
-    double most = kBend;
-    std::size_t bent = at.size();
-    for (std::size_t from = 0, to = 0; from + 1 < at.size(); from = to) {
-      for (to = from + 1; !taken[to];) ++to;
-      for (std::size_t i = from + 1; i < to; ++i) {
-        const double part = (at[i] - at[from]) / (at[to] - at[from]);
-        const auto column = [&](std::size_t j) { return values.col(static_cast<Eigen::Index>(j)); };
-        const double off =
-            (column(i) - (1.0 - part) * column(from) - part * column(to)).cwiseAbs().maxCoeff();
-        if (off > most) most = off, bent = i;
+
+  /// The middle one where at all of the sweep's speeds each load damps alike and the mean torque leaves each stiffness as it is;
+  /// else kModeSpeeds of equal distance, and of the sweep's speeds, and of those between them at which a load is steeper, those
+  /// between which that bends.
+  Vector find() const {
+    const Vector middle = Vector::Constant(1, 0.5 * (low_ + high_));
+    if (at_.empty()) return middle;
+    const Eigen::MatrixXd values = values_.topRows(values_.rows() - loads());
+    if (!((values.colwise() - values.col(0)).cwiseAbs().maxCoeff() > kSameValue)) return middle;
+    std::vector<double> at;
+    std::vector<char> taken;
+    for (const auto& [speed, take] : at_) at.push_back(speed), taken.push_back(take);
+    for (int count = kModeSpeeds; count < kMostModeSpeeds; ++count) {
+      double most = kBend;
+      std::size_t bent = at.size();
+      for (std::size_t from = 0, to = 0; from + 1 < at.size(); from = to) {
+        for (to = from + 1; !taken[to];) ++to;
+        for (std::size_t i = from + 1; i < to; ++i) {
+          const double part = (at[i] - at[from]) / (at[to] - at[from]);
+          const auto column = [&](std::size_t j) { return values.col(static_cast<Eigen::Index>(j)); };
+          const double off =
+              (column(i) - (1.0 - part) * column(from) - part * column(to)).cwiseAbs().maxCoeff();
+          if (off > most) most = off, bent = i;
+        }
       }
+      if (bent == at.size()) break;
+      taken[bent] = 1;
     }
-    if (bent == at.size()) break;
-    taken[bent] = 1;
+    std::vector<double> found;
+    for (std::size_t i = 0; i < at.size(); ++i)
+      if (taken[i]) found.push_back(at[i]);
+    return Eigen::Map<const Vector>(found.data(), static_cast<Eigen::Index>(found.size()));
   }
-  std::vector<double> found;
-  for (std::size_t i = 0; i < at.size(); ++i)
-    if (taken[i]) found.push_back(at[i]);
-  return Eigen::Map<const Vector>(found.data(), static_cast<Eigen::Index>(found.size()));
-}
+  /// Speeds on both sides of those at which a load's slope or size jumps: the kinks of curves, the ends of gates.
+  const std::vector<double>& jumps() const { return jumps_; }
+
+ private:
+  static constexpr int kTorqueSpeeds = 256;  // of equal distance at which mean torques are looked at
+
+  Eigen::Index loads() const { return static_cast<Eigen::Index>(content_.loads().size()); }
+
+  /// Of loads their damping; of complex stiffnesses what they are beyond their matrices, relative to these; of loads their size.
+  Vector values_at(double speed) {
+    const std::size_t stiffnesses = system_.frequency_terms().size();
+    Vector values(2 * loads() + static_cast<Eigen::Index>(stiffnesses));
+    Eigen::Index load = 0;
+    for (const OrderContent::Content& here : content_.at(response_.direction() * speed)) {
+      values[load] = here.speed_slope;
+      values[values.size() - loads() + load++] = here.rms;
+    }
+    for (std::size_t t = 0; t < stiffnesses; ++t)
+      values[load++] = response_.mode_stiffness(t, speed, high_).real() /
+                       system_.frequency_terms()[t].stiffness->static_stiffness();
+    return values;
+  }
+  /// At all speeds; of loads damping and size relative to the largest.
+  void find_values() {
+    Eigen::Index column = 0;
+    for (const auto& [speed, take] : at_) {
+      const Vector here = values_at(speed);
+      if (column == 0) values_.resize(here.size(), static_cast<Eigen::Index>(at_.size()));
+      values_.col(column++) = here;
+    }
+    scale_ = Vector::Ones(values_.rows());
+    if (loads() == 0) return;
+    const auto set = [&](const auto& rows, auto&& scale) {
+      if (const double largest = rows.cwiseAbs().maxCoeff(); largest > 0.0) scale.setConstant(1.0 / largest);
+    };
+    set(values_.topRows(loads()), scale_.head(loads()));
+    set(values_.bottomRows(loads()), scale_.tail(loads()));
+    values_ = (scale_.asDiagonal() * values_).eval();
+  }
+  /// A jump is where halving the distance of two speeds does not bring their values together.
+  void find_jumps() {
+    constexpr double kBeside = 4.0;    // change over that beside it that may be a jump [-]
+    constexpr int kSoon = 8;           // halvings after which a change that is none has shrunk
+    constexpr double kShrunk = 0.25;   // to this part [-]
+    constexpr double kLocated = 1e-9;  // distance of the two sides of a jump relative to the speed [-]
+    std::vector<double> at;
+    for (const auto& [speed, take] : at_) at.push_back(speed);
+    const auto change = [](const Vector& a, const Vector& b) { return (b - a).cwiseAbs().maxCoeff(); };
+    const auto step = [&](std::size_t i) {
+      if (i + 1 >= at.size()) return 0.0;
+      const auto column = static_cast<Eigen::Index>(i);
+      return change(values_.col(column), values_.col(column + 1));
+    };
+    for (std::size_t i = 0; i + 1 < at.size(); ++i) {
+      const double whole = step(i), beside = std::min(i > 0 ? step(i - 1) : 0.0, step(i + 1));
+      if (!(whole > kBend && whole > kBeside * beside)) continue;
+      double a = at[i], b = at[i + 1], left = whole;
+      Vector at_a = values_.col(static_cast<Eigen::Index>(i)),
+             at_b = values_.col(static_cast<Eigen::Index>(i) + 1);
+      for (int halving = 1; b - a > kLocated * b && !(halving > kSoon && left < kShrunk * whole); ++halving) {
+        const double middle = 0.5 * (a + b);
+        const Vector here = scale_.cwiseProduct(values_at(middle));
+        const double below = change(at_a, here), above = change(here, at_b);
+        left = std::max(below, above);
+        (below >= above ? b : a) = middle;
+        (below >= above ? at_b : at_a) = here;
+      }
+      if (left >= kShrunk * whole) jumps_.insert(jumps_.end(), {a, b});
+    }
+  }
+
+  const System& system_;
+  LinearResponse& response_;
+  std::vector<Finding> none_;
+  OrderContent content_;
+  double low_, high_;
+  std::map<double, bool> at_;  // speeds; true: one at which the modes are found
+  Eigen::MatrixXd values_;
+  Vector scale_;
+  std::vector<double> jumps_;
+};
 
 /// Takes a growth at column number i of the modes, if it is faster.
 void note_growth(const SweepModes& modes, Eigen::Index i, const Growth& here, LinearSweep& sweep) {
@@ -229,7 +311,9 @@ void number_modes(SweepModes& modes, DampedPoles& poles) {
 SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds,
                         const std::function<void()>& pause, LinearSweep& sweep, DampedPoles& poles) {
   SweepModes modes;
-  modes.speeds = speeds_of_modes(system, response, speeds);
+  const ModeSpeeds mode_speeds(system, response, speeds);
+  modes.speeds = mode_speeds.find();
+  poles.jumps = mode_speeds.jumps();
   Eigen::MatrixXcd shapes(system.node_count(), 0);  // of each mode, where it swung last
   std::vector<char> swings;                         // for each: it does at the last speed
   for (Eigen::Index i = 0; i < modes.speeds.size(); ++i) {
@@ -278,7 +362,9 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
   }
   DampedPairs& pairs = poles.pairs;
   SweepModes modes;
-  modes.speeds = speeds_of_modes(system, response, speeds);
+  const ModeSpeeds mode_speeds(system, response, speeds);
+  modes.speeds = mode_speeds.find();
+  poles.jumps = mode_speeds.jumps();
   modes.lambda.setZero(undamped.count(), modes.speeds.size());
   std::vector<Eigen::VectorXcd> shapes;
   std::vector<std::complex<double>> last;

@@ -56,6 +56,8 @@ class Search {
   }
 
   void seed() {
+    for (const double speed : poles_.jumps)
+      if (speed > low_ && speed < high_ && !curves_.contains(speed)) curves_.emplace(speed, solved(speed));
     for (Eigen::Index m = 0; m < sweep_.modes.lambda.rows(); ++m)
       for (std::size_t k = 0; k < sweep_.orders.size(); ++k)
         if (has_content_[k])
@@ -167,6 +169,8 @@ class Search {
   /// beside its width: damping that begins between two speeds can take the mode away from the order.
   Meeting meeting(Eigen::Index mode, double order, double speed) {
     constexpr int kMostSteps = 8;
+    constexpr double kLeastSlope = 0.1;  // of the order beyond its mode, relative to the order [-]
+    constexpr double kBeside = 1e-7;     // distance for the slope of the mode, relative to the speed [-]
     Meeting best;
     for (int step = 0; step < kMostSteps; ++step) {
       if (!(speed >= low_ && speed <= high_) || sweep_.modes.at(mode, speed) == 0.0) break;
@@ -176,7 +180,12 @@ class Search {
       const double distance = off / (std::abs(lambda.real()) + 2.0 * kSameSpeed * std::abs(lambda));
       if (distance < best.distance) best = {speed, lambda, distance};
       if (off <= kSameSpeed * lambda.imag()) break;
-      speed = lambda.imag() / order;
+      // Newton's step, with the slope of the mode between the modes' speeds.
+      const std::complex<double> below = sweep_.modes.at(mode, (1.0 - kBeside) * speed),
+                                 above = sweep_.modes.at(mode, (1.0 + kBeside) * speed);
+      const bool known = below != 0.0 && above != 0.0;
+      const double slope = order - (known ? (above - below).imag() / (2.0 * kBeside * speed) : 0.0);
+      speed -= (order * speed - lambda.imag()) / (std::abs(slope) > kLeastSlope * order ? slope : order);
     }
     return best;
   }
