@@ -16,6 +16,8 @@
 /// Free parts: as in linear_sweep.hpp, what is left over of mean torque is reported, and taken up by `balance` or
 /// by the acceleration of the part; a run in time keeps their mean speed all the same (speed_hold.hpp).
 ///
+/// Stiffness with a loss factor, or over what an element carries, is that of runs in time (frequency_stiffness.hpp).
+///
 /// Refused: loads in time, given motions, general elements.
 ///
 /// Harmonics: at least up to the highest that loads and laws excite with closed contacts

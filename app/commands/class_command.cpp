@@ -16,6 +16,7 @@
 #include "app/report/sweep_report.hpp"
 #include "app/results/branches_result.hpp"
 #include "app/results/class_result.hpp"
+#include "app/results/coupling_notes.hpp"
 #include "app/results/sweep_result.hpp"
 
 namespace drev::app {
@@ -42,6 +43,8 @@ void sweep_contacts(const CommandLine& line, std::vector<ClassCase>& cases) {
     sweeps.push_back(sweep_nonlinear(c.request.model.system, options));
     end_if_interrupted();
     c.notes = excitation_notes(options, sweeps.back());
+    for (std::string& note : coupling_notes(c.request.model.system, sweeps.back()))
+      c.notes.push_back(std::move(note));
     for (const double speed : worst_motions(sweeps.back()).missing) missing.push_back(speed);
   }
   std::sort(missing.begin(), missing.end());

@@ -34,7 +34,7 @@ Json branches_report_data(const ModelRequest& model, const NonlinearSweepOptions
                           const NonlinearSweep& sweep, const std::string& words,
                           const std::vector<DrawnLimit>& limits) {
   Json data = page_data("sweep", "periodic motions over speed", model, words);
-  data["notes"] = branches_notes(options, sweep);
+  data["notes"] = branches_notes(model.system, options, sweep);
   data["shaft"] = reference_name(model.model_case.model);
   data["limits"] = limits_array(sweep, limits);
   data["result"] = branches_object(model, options, sweep);

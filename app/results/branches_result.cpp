@@ -10,6 +10,7 @@
 #include "app/base/parameter_text.hpp"
 #include "app/base/text_layout.hpp"
 #include "app/results/branches_largest.hpp"
+#include "app/results/coupling_notes.hpp"
 #include "app/results/run_json.hpp"
 #include "app/results/sweep_result.hpp"
 #include "app/run/excitation.hpp"
@@ -163,9 +164,10 @@ LeftOver left_over_of(const NonlinearSweep& sweep, std::size_t part) {
   return left;
 }
 
-std::string notes_text(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
+std::string notes_text(const System& system, const NonlinearSweepOptions& options,
+                       const NonlinearSweep& sweep) {
   std::string text;
-  for (const std::string& note : branches_notes(options, sweep)) text += wrap(note, 0);
+  for (const std::string& note : branches_notes(system, options, sweep)) text += wrap(note, 0);
   return text;
 }
 
@@ -243,7 +245,8 @@ std::string excess_sentence(const NonlinearSweep& sweep) {
 
 }  // namespace
 
-std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep) {
+std::vector<std::string> branches_notes(const System& system, const NonlinearSweepOptions& options,
+                                        const NonlinearSweep& sweep) {
   std::vector<std::string> notes;
   double error = 0.0;
   bool judged = true, unknown = false;
@@ -295,6 +298,7 @@ std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, co
     notes.push_back("Harmonic balance found no motion at " + join(speeds) + " rpm.");
   }
   for (const std::string& note : excitation_notes(options, sweep)) notes.push_back(note);
+  for (const std::string& note : coupling_notes(system, sweep)) notes.push_back(note);
   return notes;
 }
 
@@ -324,7 +328,7 @@ std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOpti
   if (const std::string largest = largest_as_text(sweep); !largest.empty()) text += largest + "\n";
   if (!sweep.branches.empty()) text += changes_table(sweep) + "\n";
   for (const std::string& part :
-       {runs_table(sweep), notes_text(options, sweep), wrap(model.model_case.note, 0)})
+       {runs_table(sweep), notes_text(model.system, options, sweep), wrap(model.model_case.note, 0)})
     if (!part.empty() && part != "\n") text += part + "\n";
   text.pop_back();
   return text;
@@ -385,6 +389,7 @@ Json branches_object(const ModelRequest& model, const NonlinearSweepOptions& opt
   object["unsolved_rpm"] = std::move(unsolved);
   object["floating_parts"] = std::move(floating);
   object["balance"] = text_or_null(options.balance);
+  object["notes"] = coupling_notes(model.system, sweep);
   object["note"] = text_or_null(model.model_case.note);
   return object;
 }

@@ -10,8 +10,9 @@
 
 namespace drev::app {
 
-/// Sentences on errors, stability, unbalanced mean torque, and motions that were not found.
-std::vector<std::string> branches_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep);
+/// Sentences on errors, stability, unbalanced mean torque, couplings, and motions that were not found.
+std::vector<std::string> branches_notes(const System& system, const NonlinearSweepOptions& options,
+                                        const NonlinearSweep& sweep);
 /// Of these the sentences on unbalanced mean torque, and on loads that no curve contains.
 std::vector<std::string> excitation_notes(const NonlinearSweepOptions& options, const NonlinearSweep& sweep);
 std::string branches_as_text(const ModelRequest& model, const NonlinearSweepOptions& options,

@@ -315,8 +315,8 @@ std::vector<std::string> soft_chain_warnings(const System& system) {
           system.element_instances()[idx(index(term.element))].name +
           ": in time its loss factor is that of a chain with a static stiffness of " +
           short_digits(chain, 7) + " N m/rad, less than half of the " + short_digits(stated, 7) +
-          " N m/rad stated: a mean torque twists it further than that, and slowly. Means of 'drev sweep' "
-          "have the stated stiffness");
+          " N m/rad stated: a mean torque twists it further than that, and slowly. Means of linear "
+          "sweeps have the stated stiffness");
   }
   return warnings;
 }

@@ -10,9 +10,9 @@
 ///   k = k_f(f) k_m(|T_m|)/k_m,1 k_A(A)/k_A,1,        eta alike
 ///
 /// A = sqrt(sum |X_h|^2) over the orders h (for one order its amplitude): an equivalent linearisation, solved for at each
-/// speed of a sweep; T_m is the mean torque at that speed. In time and for damped modes both stand at `at_mean_torque`
-/// and `at_amplitude`; modes of a sweep have k* at their own frequency, under the mean torque and `at_amplitude`. Relative damping psi (loss a cycle over elastic energy) = 2 pi eta. In the frequency domain (drev sweep) k* holds exactly at every
-/// order. In time, and for damped modes, a chain of Maxwell branches stands for it,
+/// speed of a sweep; T_m is the mean torque at that speed. In time, with contacts followed and for damped modes both stand at `at_mean_torque`
+/// and `at_amplitude`; modes of a sweep have k* at their own frequency, under the mean torque and `at_amplitude`. Relative damping psi (loss a cycle over elastic energy) = 2 pi eta. In linear sweeps k* holds exactly at every
+/// order. In those others a chain of Maxwell branches stands for it,
 ///
 ///   G(s) = k_0 + sum_j k_j (c_j s + m_j s^2)/(k_j + c_j s + m_j s^2),     c_j = tau_j k_j,  m_j = c_j/(8 w_high)
 ///
@@ -81,6 +81,10 @@ class ViscoelasticStiffness final : public FrequencyStiffness {
   bool follows_frequency() const override { return params_.frequencies.size() > 1; }
   bool follows_mean_torque() const override { return params_.by_mean_torque.at.size() > 1; }
   CarriedLoad load_in_matrices() const override { return {params_.at_mean_torque, params_.at_amplitude}; }
+  std::optional<BandFit> fit_in_matrices() const override {
+    if (!loses()) return std::nullopt;
+    return BandFit{fit_error_, params_.lowest_frequency, params_.highest_frequency};
+  }
   std::vector<double> amplitudes() const override { return params_.by_amplitude.at; }
   double static_stiffness() const override { return static_stiffness_; }  ///< k_0 [N m/rad]
   double static_beyond_matrices() const override { return at(0.0).real() - static_stiffness_; }

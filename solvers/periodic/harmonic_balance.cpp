@@ -22,6 +22,8 @@ constexpr double kGmresTolerance = 1e-3;
 /// Largest ratio of K |z| + w^2 M |z| to the load that causes z [-]; above it, cancellation leaves fewer than
 /// 5 digits.
 constexpr double kResonance = 1e10;
+/// Harmonic of the force on an unknown beside the largest of them that is rounding of the transform [-].
+constexpr double kNoForce = 1e-13;
 
 /// The pattern with each entry (a + i b) replaced by [a -b; b a].
 SparseMatrix real_pattern(const SparseMatrix& p) {
@@ -155,7 +157,14 @@ double HarmonicBalance::aperiodicity(const Harmonics& z, int samples) {
 bool HarmonicBalance::solve_stiffness(Harmonics& right) {
   const SparseMatrix& p = system_.pattern();
   Vector values(4 * p.nonZeros()), x(2 * right.rows());
+  // Without laws no harmonic reaches another one: where nothing acts nothing moves, even at an undamped resonance.
+  for (Eigen::Index i = 0; linear() && i < right.rows(); ++i) {
+    const double none = kNoForce * right.row(i).cwiseAbs().maxCoeff();
+    for (Eigen::Index n = 0; n < right.cols(); ++n)
+      if (std::abs(right(i, n)) <= none) right(i, n) = 0.0;
+  }
   for (Eigen::Index n = 0; n < right.cols(); ++n) {
+    if (linear() && right.col(n).isZero(0.0)) continue;
     const double w = w_ * static_cast<double>(n);
     for (int column = 0, to = 0; column < p.cols(); ++column)
       for (int half = 0; half < 2; ++half)
@@ -311,14 +320,13 @@ HarmonicBalance::Outcome HarmonicBalance::solve(int harmonics, int samples, doub
   if (!correction(z, samples, error)) return {.reason = singular()};
   for (double left = size(error);; ++outcome.iterations) {
     const double largest = size(z);
-    const bool linear = slopes_.empty() && feedback_.empty();
     outcome.residual = left > 0.0 ? left / largest : 0.0;
     // The last correction is applied even so: in the highest harmonics it is small in the norm only.
-    if (left == 0.0 || (linear && left <= tolerance * largest)) {
+    if (left == 0.0 || (linear() && left <= tolerance * largest)) {
       z += error;
       return outcome;
     }
-    if (linear) {
+    if (linear()) {
       d = error;
     } else {
       find_slopes(z, samples);

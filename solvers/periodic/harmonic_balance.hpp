@@ -10,8 +10,8 @@
 ///
 ///   d + S^-1 F[(dK(t) + dC(t) d/dt) d] = -S^-1 R,     dK, dC: slopes at each time less the closed ones
 ///
-/// d is found by matrix-free GMRES. Linear systems need one solve for each harmonic. The slopes leave out how
-/// a law follows the deviation of its phase node.
+/// d is found by matrix-free GMRES. Linear systems need one solve for each harmonic at which something acts; the others
+/// are 0. The slopes leave out how a law follows the deviation of its phase node.
 #include <drev/core/assembler.hpp>
 
 #include <Eigen/Core>
@@ -59,6 +59,8 @@ class HarmonicBalance {
     const LoadTerm* term;
     std::vector<Entry> row;
   };
+  /// Whether no law and no load follows the motion: each harmonic then is a problem of its own.
+  bool linear() const { return slopes_.empty() && feedback_.empty(); }
   double inner(const Harmonics& a, const Harmonics& b) const;
   /// p - B y - g in the motion, `later` periods after the first, with all loads or without those of loads_.
   Samples forces(const Samples& q, const Samples& v, double later, bool all_loads);

@@ -65,8 +65,11 @@ ScalarResponse LawBalance::respond(const Term& term, Value x, double angle, doub
   if (term.law != nullptr) return term.law->force->evaluate(law_input(term, x, angle, speed, psi));
   const double phi = turns_ * psi, w = direction_ * speed;
   const double ratio = system_.ratio(term.load->node);
-  const LoadInput in{
-      .t = phi / w, .nominal_angle = ratio * phi, .deviation = x.x, .speed = ratio * w + x.rate};
+  const LoadInput in{.t = phi / w,
+                     .nominal_angle = ratio * phi,
+                     .deviation = x.x,
+                     .speed = ratio * w + x.rate,
+                     .nominal_speed = ratio * w};
   LoadInput rest = in;
   rest.deviation = 0.0;
   rest.speed = ratio * w;

@@ -1,5 +1,5 @@
 // drev sweep where curves end and where runs answer: motions of a linear train that grow between two multipliers of +1;
-// a free train whose load follows the speed.
+// a free train whose load follows the speed; what couplings of rubber have in motions with contacts.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -201,4 +201,60 @@ TEST_CASE("A curve of four cycles ends on that of two: each change once, no stab
     CHECK(text.substr(first, at - first) != text.substr(at + 4, last - at - 4));
   }
   CHECK(ranges >= 2);
+}
+
+TEST_CASE("A sweep with contacts and its class calculation say what they take couplings for",
+          "[sweep][class]") {
+  const drev::test::TemporaryFolder folder;
+  const auto model = [&](const std::string& name, const std::string& coupling) {
+    std::ofstream(folder / name)
+        << "format = 1\n[nodes]\na = { nominal_speed_rpm = 1000 }\nb = {}\ng = {}\n[elements]\n"
+           "Ja = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+           "Jb = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 1 }\n"
+           "Jg = { type = \"inertia\", node = \"g\", inertia_kg_m2 = 1 }\n"
+           "s = { type = \"elastic_coupling\", nodes = [\"a\", \"b\"], damping_Nms_per_rad = 1, " +
+               coupling +
+               " }\n"
+               "mesh = { type = \"gear_mesh\", nodes = [\"b\", \"g\"], base_radius_1_mm = 100, "
+               "base_radius_2_mm = 100, stiffness_N_per_m = 1e7, damping_Ns_per_m = 1000, normal_backlash_mm "
+               "= "
+               "0.1 }\n"
+               "e = { type = \"engine_order_torque\", node = \"a\", mean_Nm = 200, harmonics = { order = "
+               "[1], "
+               "amplitude_Nm = [10] }, twist_feedback = false }\n"
+               "l = { type = \"engine_order_torque\", node = \"g\", mean_Nm = 200, twist_feedback = false }\n"
+               "[class]\nrated_speed_rpm = 1000\n[class.sections]\ns = { permissible_torque_Nm = 50 }\n";
+    return (folder / name).string();
+  };
+  const auto words = [](const std::string& command, const std::string& file) {
+    return std::vector<std::string>{command, file, "--speeds", "900,1000"};
+  };
+  const std::string page = (folder / "page.html").string(),
+                    follows = model("follows.toml",
+                                    "by_mean_torque = { mean_torque_Nm = [0, 200], stiffness_Nm_per_rad = "
+                                    "[1000, 4000], loss_factor = [0, 0] }");
+  const std::string by_torque =
+      "s has here, as in runs in time, the stiffness of its at_mean_torque, 0 N m (the motions carry 200 N "
+      "m)";
+  for (const char* command : {"sweep", "class"}) {
+    std::vector<std::string> with_page = words(command, follows), as_json = with_page;
+    with_page.insert(with_page.end(), {"--report", page});
+    as_json.emplace_back("--json");
+    auto text = drev_command(with_page);
+    INFO(text.err);
+    std::replace(text.out.begin(), text.out.end(), '\n', ' ');
+    CHECK(contains(text.out, by_torque));
+    CHECK(contains(read_file(page), by_torque));
+    const Json json = Json::parse(drev_command(as_json).out);
+    const Json& notes = (json.contains("cases") ? json["cases"][0] : json).at("notes");
+    CHECK(contains(notes.dump(), by_torque));
+  }
+  auto lossy = drev_command(words("sweep", model("loses.toml",
+                                                 "stiffness_Nm_per_rad = 1e4, loss_factor = 0.1, "
+                                                 "lowest_frequency_Hz = 15, highest_frequency_Hz = 30")));
+  std::replace(lossy.out.begin(), lossy.out.end(), '\n', ' ');
+  CHECK(contains(lossy.out, "the loss of its chain, off by up to 2.1 % from 15 to 30 Hz"));
+  auto closed = words("sweep", follows);
+  closed.insert(closed.end(), {"--contact", "closed"});
+  CHECK_FALSE(contains(drev_command(closed).out, "as in runs in time"));
 }

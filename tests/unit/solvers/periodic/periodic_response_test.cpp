@@ -82,6 +82,22 @@ TEST_CASE("Periodic response of a damped oscillator is its closed form, harmonic
   CHECK(r.peaks[0].min == Approx(min).epsilon(1e-6));
 }
 
+TEST_CASE("An undamped mode at a harmonic at which nothing acts stays at rest, unless a law may reach it") {
+  // 1 N m at 10 rad/s, natural frequency 20 rad/s: k/(k - w^2 J).
+  const Driven p{
+      .inertia = 2.0, .damping = 0.0, .stiffness = 800.0, .harmonics = {{1.0, 1.0, 0.3}}, .mean = 0.0};
+  const PeriodicResponse r = solve_periodic(p.model().build(), {.channels = {"shaft.torque_Nm"}});
+  INFO(r.reason);
+  REQUIRE(r.found);
+  CHECK(r.peaks[0].max == Approx(4.0 / 3.0).epsilon(1e-6));
+  Driven excited = p;
+  excited.harmonics.push_back({2.0, 1e-6, 0.0});
+  CHECK(solve_periodic(excited.model().build(), {}).reason.find("undamped resonance") != std::string::npos);
+  Model bent = p.model();
+  bent.add<PolylineSpring>("stop", {"clock", "disc"}, {.x = {-1.0, 1.0, 2.0}, .y = {0.0, 0.0, 1.0}});
+  CHECK_FALSE(solve_periodic(bent.build(), {}).found);
+}
+
 TEST_CASE("Periodic response of two masses is the solution of the two complex equations") {
   const double w = 30.0, tau = 7.0;
   Model m("chain");

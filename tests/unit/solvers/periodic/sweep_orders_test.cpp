@@ -1,6 +1,7 @@
 // Orders that a sweep solves side by side, in sets of lanes, against the same orders one by one, which are solved by
 // the elimination with pivoting. Covers solvers/periodic/linear_response.hpp, lane_sections.hpp and
-// solvers/linear/lane_elimination.hpp through sweep_linear(); and loads that only some of the speeds have (order_content.hpp).
+// solvers/linear/lane_elimination.hpp through sweep_linear(); loads that only some of the speeds have (order_content.hpp); and
+// loads about the nominal speed in a sweep with contacts (law_balance.hpp).
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/nonlinear_sweep.hpp>
@@ -176,4 +177,37 @@ TEST_CASE("What a load depends on is found at the speeds of the sweep, whatever 
   const System half = gated(
       600.0, [](const TorqueVariables& x) { return 100.0 * cos(0.5 * x.angle); }, 900.0);
   CHECK(cycle_turns(half, speeds) == 2.0);
+}
+
+TEST_CASE("A propeller's damping factor counts in a sweep with contacts as in one with closed teeth",
+          "[nonlinear_sweep]") {
+  Model m("driven mesh");
+  for (const char* node : {"a", "b", "g"}) m.add_node(node);
+  m.constant_speed("a", rpm(650));
+  m.add<Inertia>("J_b", {"b"}, {.inertia = 1.0});
+  m.add<Inertia>("J_g", {"g"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = 1e4, .damping = 1.0});
+  m.add<GearMesh>("mesh", {"b", "g"},
+                  {.base_radius_1 = 0.1,
+                   .base_radius_2 = 0.1,
+                   .stiffness = 1e7,
+                   .normal_backlash = 1e-4,
+                   .damping = 100.0,
+                   .damping_law = MeshDamping::limited});
+  m.add<EngineOrderTorque>(
+      "e", {"b"}, {.harmonics = {{.order = 1.0, .amplitude = 1.0}}, .mean = 1000.0, .twist_feedback = false});
+  m.add<EngineOrderTorque>("l", {"g"}, {.mean = 1000.0, .twist_feedback = false});
+  m.add<Propeller>("p", {"b"}, {.rated_torque = 200.0, .rated_speed = rpm(1000), .damping_factor = 20.0});
+  const System system = m.build();
+  const std::vector<double> speeds{rpm(650), rpm(680)};
+  const LinearSweep closed = sweep_linear(
+      system, {.speeds = speeds, .orders = {1.0}, .sections = {"s.torque_Nm"}, .close_contacts = true});
+  const NonlinearSweep sweep = sweep_nonlinear(
+      system, {.speeds = speeds, .orders = {1.0}, .sections = {"s.torque_Nm"}, .runs = false});
+  REQUIRE(sweep.branches.size() == 1);
+  Eigen::Index seen = 0;
+  for (const SweptMotion& motion : sweep.branches[0].motions)
+    if (motion.asked)
+      CHECK(motion.half_range()[0] == Approx(closed.sections[0].half_range()[seen++]).epsilon(1e-6));
+  CHECK(seen == 2);
 }
