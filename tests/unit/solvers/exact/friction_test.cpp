@@ -64,6 +64,24 @@ TEST_CASE("Friction: a clutch engages, constant torque, ramp, torque falling wit
   CHECK(open.summary.friction_events[0].becomes == "open");
 }
 
+TEST_CASE("Friction: a torque that rises with the slip is a damper, on either side of zero slip") {
+  // As long as the run, the first step behind zero slip would be longer than the damper's rate allows.
+  for (const double t_end : {0.5, 1.0, 1.1, 10.0}) {
+    Model m("brake");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
+    m.add<GroundSpring>("spring", {"n"}, {.stiffness = 10.0, .damping = 2.0});
+    m.set_initial("n", 0.5, 0.5);
+    Model damped = m;
+    m.add<Brake>("brake", {"n"}, {.slip_speeds = {0.0, 10.0}, .sliding_torques = {0.0, 10.0}});
+    damped.add<Dashpot>("damper", {"n"}, {.damping = 1.0});
+    const FrictionRun r = ran_to(m.build(), t_end), expected = ran_to(damped.build(), t_end);
+    INFO(t_end);
+    CHECK(r.state.z[0] == Approx(expected.state.z[0]).epsilon(1e-10).margin(1e-12));
+    CHECK(r.state.v[0] == Approx(expected.state.v[0]).epsilon(1e-10).margin(1e-12));
+  }
+}
+
 TEST_CASE("Friction: stick-slip with a break-away torque (case F6)") {
   Model m("stick-slip");
   m.add_node("mass");
