@@ -82,6 +82,22 @@ TEST_CASE("Friction: a torque that rises with the slip is a damper, on either si
   }
 }
 
+TEST_CASE("Friction: an engagement by a power of the time, whose series has gaps") {
+  // J w' = -t^n w
+  for (const double n : {1.0, 2.0, 3.0}) {
+    Model m("brake");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
+    m.set_initial("n", 0.0, 5.0);
+    m.add<Brake>("brake", {"n"},
+                 {.slip_speeds = {0.0, 10.0},
+                  .sliding_torques = {0.0, 10.0},
+                  .engagement_formula = TimeCurve(
+                      {.function = [n](const Dual& t) { return pow(t, n); }, .from = 0.0, .to = 1.0})});
+    CHECK(ran_to(m.build(), 1.0).state.v[0] == Approx(5.0 * std::exp(-1.0 / (n + 1.0))).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("Friction: stick-slip with a break-away torque (case F6)") {
   Model m("stick-slip");
   m.add_node("mass");
