@@ -268,7 +268,9 @@ bool FrictionSeries::pass(const Change& change, const Assembler& assembler, Eval
     Contact* first = nullptr;  // the contact that breaks away first; the others are asked again
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       Contact& other = contacts_[i];
-      if (!rested[i] || other.stuck || other.tied || !breaks_away(i)) continue;
+      // From an engagement of zero its torque does not jump.
+      const bool jumps = breaks_away(i) && other.capacity[0] > 0.0;
+      if (!rested[i] || other.stuck || other.tied || !jumps) continue;
       if (!first || static_cast<int>(i) == change.contact) first = &other;
     }
     released = first != nullptr;
@@ -300,7 +302,13 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
     } else if (c.tie >= 0) {
       gears.push_back(gear_derivative(i, change, order));
     } else if (c.tied) {
-      near = c.sign > 0 ? 1 : 2;
+      // Its other bound is the same as far as the contact holds nothing.
+      const Limits most = limits(i, false);
+      const auto first = c.capacity.begin(),
+                 behind = first + std::min<std::ptrdiff_t>(order, c.capacity.size());
+      const bool both =
+          most.low == most.high || std::all_of(first, behind, [](double g) { return g == 0.0; });
+      near = both ? 3 : c.sign > 0 ? 1 : 2;
     } else if (c.stuck) {
       for (const Bound& b : c.bounds) {
         bool zero = chosen && b.what == change.what;

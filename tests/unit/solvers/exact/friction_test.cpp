@@ -377,6 +377,31 @@ TEST_CASE("Friction: a stuck clutch costs no more than the shaft that it could b
   CHECK(stuck.state.z[1] == Approx(std::sin(5.0 * omega) / omega).epsilon(1e-12));
 }
 
+TEST_CASE("Friction: contacts side by side that hold nothing at the start let go, either way") {
+  // Both bounds of each meet at zero: by their torque, by their engagement, or by both.
+  const Brake::Params none{.torque = 0.0}, viscous{.slip_speeds = {0.0, 9.0}, .sliding_torques = {0.0, 9.0}};
+  const Brake::Params ramp{.torque = 0.0, .engagement = TimeTable({0.0, 1.0}, {0.0, 1.0})};
+  const Brake::Params weak{
+      .torque = 0.1, .break_away_ratio = 2.0, .engagement = TimeTable({0.0, 1.0}, {0.0, 1.0})};
+  const auto angle = [](const Brake::Params& first, const Brake::Params& second, double load) {
+    Model m("brakes");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
+    m.add<Brake>("first", {"n"}, first);
+    m.add<Brake>("second", {"n"}, second);
+    m.add<AppliedTorque>("load", {"n"}, {.table = TimeTable({0.0, 1.0}, {0.0, load})});
+    return ran_to(m.build(), 1.0).state.z[0];
+  };
+  for (const double load : {1.0, -1.0}) {
+    CHECK(angle(none, ramp, load) == Approx(load / 6.0).epsilon(1e-12));
+    CHECK(angle(ramp, none, load) == Approx(load / 6.0).epsilon(1e-12));
+    CHECK(angle(none, weak, load) == Approx(0.9 * load / 6.0).epsilon(1e-12));
+    // v' = t - 2 v
+    const double damped = 0.125 * (1.0 - std::exp(-2.0));
+    CHECK(angle(viscous, viscous, load) == Approx(load * damped).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("Friction: methods that cannot take it say so, and speeds that a freewheel forbids are refused") {
   Model m = two_inertias(1.0, 1.0, 1.0, 0.0);
   m.add<Freewheel>("freewheel", {"a", "b"}, {});
