@@ -122,7 +122,7 @@ void FrictionSeries::find_bounds(std::size_t i) {
       for (std::size_t d = 0; d < std::min(size.size(), largest_.size()); ++d)
         size[d] = std::max(size[d], largest_[d]);
       c.bounds.push_back({what, std::move(g)});
-      clean(c.bounds.back(), size, zero, 0.0, on_it, bounded_patience());
+      clean(c.bounds.back(), size, zero, 0.0, on_it, bounded_patience(), zero);
     }
     return;
   }
@@ -147,9 +147,10 @@ void FrictionSeries::find_bounds(std::size_t i) {
 }
 
 /// Coefficients that are rounding become zero: the first within `zero` (or any where on_it), the second within
-/// `first`. patience: factor on what is taken for rounding.
+/// `first`, and those by which the bound would be crossed by no more than `touch` before the next one turns it back.
+/// patience: factor on what is taken for rounding.
 void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double zero, double first,
-                           bool on_it, double patience) {
+                           bool on_it, double patience, double touch) {
   std::vector<double>& g = bound.g;
   bound.falls = -1;
   if (!on_it && g[0] > zero) return;
@@ -160,11 +161,16 @@ void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double
   g[0] = 0.0;
   double lower = size[0], most = 0.0;  // a coefficient's rounding follows from those before it, too
   for (std::size_t d = 1; d < g.size(); ++d) most = std::max(most, std::abs(g[d]));
+  const auto touches = [&](std::size_t d) {
+    if (!(g[d] < 0.0 && d + 1 < g.size() && g[d + 1] > 0.0)) return false;
+    const double back = -g[d] / g[d + 1];  // s where it is back, if those behind are small until there
+    return back * most <= 0.5 * g[d + 1] && -g[d] * std::pow(back, static_cast<double>(d)) <= touch;
+  };
   for (std::size_t d = 1; d < g.size(); ++d) {
     lower = std::max(lower, size[d]);
     const double rounding =
         patience * std::max({kNothing * size[d], kLeast * lower, kOutgrown * most}) + (d == 1 ? first : 0.0);
-    if (std::abs(g[d]) > rounding) {
+    if (std::abs(g[d]) > rounding && !touches(d)) {
       if (g[d] < 0.0) bound.falls = static_cast<int>(d);
       return;
     }

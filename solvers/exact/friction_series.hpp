@@ -185,7 +185,7 @@ class FrictionSeries final : public TermForces {
   void factor_stuck();
   void find_bounds(std::size_t i);
   static void clean(Bound& bound, const std::vector<double>& size, double zero, double first, bool on_it,
-                    double patience = 1.0);
+                    double patience = 1.0, double touch = 0.0);
   double heat(const Contact& contact, double s) const;
   // Of gears: friction_gears.cpp.
   void find_gears();

@@ -402,6 +402,19 @@ TEST_CASE("Friction: contacts side by side that hold nothing at the start let go
   }
 }
 
+TEST_CASE(
+    "Friction: a torque that touches the break-away torque and falls lets nothing go, at the start as "
+    "later") {
+  for (const double phase : {0.0, -0.5 * kPi}) {
+    Model m("held");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
+    m.add<Brake>("brake", {"n"}, {.torque = 10.0, .break_away_ratio = 2.0});
+    m.add<AppliedTorque>("load", {"n"}, {.harmonics = {{0.5, 20.0, phase}}});
+    CHECK(ran_to(m.build(), 0.9).state.z[0] == 0.0);
+  }
+}
+
 TEST_CASE("Friction: methods that cannot take it say so, and speeds that a freewheel forbids are refused") {
   Model m = two_inertias(1.0, 1.0, 1.0, 0.0);
   m.add<Freewheel>("freewheel", {"a", "b"}, {});
