@@ -9,6 +9,9 @@ namespace {
 
 constexpr int kMostHalvings = 24;
 constexpr int kLooks = 257;  // points at which the largest value is looked for
+// How far inside a stretch, relative to the times, its slope at an end that may be a kink is taken: rounding of the formula's
+// parts does not lead across the kink there.
+constexpr double kBesideKink = 1e-14;
 
 using Cubic = std::array<double, 4>;
 
@@ -32,7 +35,8 @@ TimeCurve::TimeCurve(Params params) : params_(std::move(params)) {
   double largest = 0.0;
   for (int i = 0; i < kLooks; ++i)
     largest = std::max(largest, std::abs(value(p.from + (p.to - p.from) * i / (kLooks - 1), false).value));
-  const double permitted = p.accuracy * largest, least = std::ldexp(p.to - p.from, -kMostHalvings);
+  permitted_ = p.accuracy * largest;
+  const double least = std::ldexp(p.to - p.from, -kMostHalvings);
   struct Stretch {
     double from, to;
   };
@@ -42,21 +46,25 @@ TimeCurve::TimeCurve(Params params) : params_(std::move(params)) {
       const Stretch s = open.back();
       open.pop_back();
       const double h = s.to - s.from;
-      const Cubic c = hermite(value(s.from, false), value(s.to, s.to == ends[e + 1]), h);
+      Dual a = value(s.from, false), b = value(s.to, s.to == ends[e + 1]);
+      const double beside = kBesideKink * std::max({p.to - p.from, std::abs(p.from), std::abs(p.to)});
+      if (s.from == ends[e]) a.by_x = value(std::min(s.from + beside, s.to), false).by_x;
+      if (s.to == ends[e + 1]) b.by_x = value(std::max(s.to - beside, s.from), false).by_x;
+      const Cubic c = hermite(a, b, h);
       double error = 0.0;
-      bool finite = std::isfinite(permitted);
+      bool finite = std::isfinite(permitted_);
       for (const double part : {0.25, 0.5, 0.75}) {
         const double off = std::abs(cubic_at(c, part * h) - value(s.from + part * h, false).value);
         error = std::max(error, off);
         finite = finite && std::isfinite(off);
       }
-      if (error > permitted && h > least) {
+      if (error > permitted_ && h > least) {
         const double middle = s.from + 0.5 * h;
         open.push_back({middle, s.to});
         open.push_back({s.from, middle});
         continue;
       }
-      reached_ = reached_ && finite && error <= permitted;
+      reached_ = reached_ && finite && error <= permitted_;
       knots_.push_back(s.from);
       pieces_.push_back(c);
     }
@@ -96,8 +104,8 @@ double TimeCurve::smallest() const {
   double least = pieces_.empty() ? 0.0 : pieces_.front()[0];
   for (std::size_t k = 0; k + 1 < knots_.size(); ++k)
     for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0})
-      least = std::min(least, cubic_at(pieces_[k], part * (knots_[k + 1] - knots_[k])));
-  return least;
+      least = std::min(least, value(knots_[k] + part * (knots_[k + 1] - knots_[k]), part == 1.0).value);
+  return std::abs(least) <= permitted_ ? 0.0 : least;
 }
 
 void TimeCurve::check(ParameterCheck& check, const std::string& parameter) const {

@@ -5,7 +5,8 @@
 ///
 /// Between knots g is the cubic that has f's values and slopes at both ends (Hermite). Stretches are halved until the cubic
 /// differs from f by at most `accuracy` times the largest |f| at a quarter, half and three quarters of each; its error is
-/// h^4 |f''''|/384. Kinks and jumps of f are to be named as breakpoints: f is continuous from the right there.
+/// h^4 |f''''|/384. Kinks and jumps of f between `from` and `to` are to be named as breakpoints: f is continuous from the right
+/// there, and each side has its own slope.
 /// Source: C. de Boor, A Practical Guide to Splines, Springer, 1978, chapter IV (cubic Hermite interpolation).
 #include <drev/core/error.hpp>
 #include <drev/core/law/dual.hpp>
@@ -37,7 +38,7 @@ class TimeCurve {
   const Params& params() const { return params_; }
   const std::vector<double>& knots() const { return knots_; }  ///< `from` and `to` among them [s]
   void check(ParameterCheck& check, const std::string& parameter) const;
-  /// The least value at knots and at quarters between them.
+  /// The least value of f at knots and at quarters between them; 0 within the accuracy of it.
   double smallest() const;
 
  private:
@@ -46,6 +47,7 @@ class TimeCurve {
   Params params_;
   std::vector<double> knots_;
   std::vector<std::array<double, 4>> pieces_;  // about the knot that each starts at
+  double permitted_ = 0.0;                     // error, by the accuracy
   bool reached_ = true;                        // the accuracy
 };
 

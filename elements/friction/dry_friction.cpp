@@ -54,8 +54,7 @@ void DryFriction::check(ParameterCheck& check) const {
                "must not be given together with engagement; give one of them");
   if (p.engagement_formula) {
     p.engagement_formula->check(check, "engagement_formula");
-    if (const double least = p.engagement_formula->smallest();
-        least < -p.engagement_formula->params().accuracy)
+    if (const double least = p.engagement_formula->smallest(); least < 0.0)
       check.fail("engagement_formula", to_text(least), "", "must be >= 0 at all times");
   }
   if (!p.engagement) return;

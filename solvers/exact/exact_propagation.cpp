@@ -377,7 +377,7 @@ class ExactRun final : public StepMotion {
   /// Expands from now_ over h with the pieces that hold; returns the step got, which may be shorter; 0 ends the run.
   double expand(double h) {
     for (;;) {
-      const auto [got, again, longer] = expansion_.attempt(now_, laws_, h, limits(h));
+      const auto [got, again, longer, stands] = expansion_.attempt(now_, laws_, h, limits(h));
       if (again) {
         h = got == length_.longest_projected() ? length_.hold_back(h) : got;
         continue;
@@ -385,7 +385,7 @@ class ExactRun final : public StepMotion {
       const double shorter = length_.attempted(h, got, longer);
       if (got == h) return h;
       if (shorter <= kNoProgress * length_.longest_projected()) return give_up(h);
-      if (got > 0.0 && expansion_.shortens()) {
+      if (stands) {
         known_.shorten(got / h);
         return got;
       }

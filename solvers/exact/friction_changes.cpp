@@ -122,7 +122,7 @@ void FrictionSeries::find_bounds(std::size_t i) {
       for (std::size_t d = 0; d < std::min(size.size(), largest_.size()); ++d)
         size[d] = std::max(size[d], largest_[d]);
       c.bounds.push_back({what, std::move(g)});
-      clean(c.bounds.back(), size, zero, 0.0, on_it, bounded_patience());
+      clean(c.bounds.back(), size, zero, 0.0, on_it, bounded_patience(), zero);
     }
     return;
   }
@@ -147,9 +147,10 @@ void FrictionSeries::find_bounds(std::size_t i) {
 }
 
 /// Coefficients that are rounding become zero: the first within `zero` (or any where on_it), the second within
-/// `first`. patience: factor on what is taken for rounding.
+/// `first`, and those by which the bound would be crossed by no more than `touch` before the next one turns it back.
+/// patience: factor on what is taken for rounding.
 void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double zero, double first,
-                           bool on_it, double patience) {
+                           bool on_it, double patience, double touch) {
   std::vector<double>& g = bound.g;
   bound.falls = -1;
   if (!on_it && g[0] > zero) return;
@@ -160,11 +161,16 @@ void FrictionSeries::clean(Bound& bound, const std::vector<double>& size, double
   g[0] = 0.0;
   double lower = size[0], most = 0.0;  // a coefficient's rounding follows from those before it, too
   for (std::size_t d = 1; d < g.size(); ++d) most = std::max(most, std::abs(g[d]));
+  const auto touches = [&](std::size_t d) {
+    if (!(g[d] < 0.0 && d + 1 < g.size() && g[d + 1] > 0.0)) return false;
+    const double back = -g[d] / g[d + 1];  // s where it is back, if those behind are small until there
+    return back * most <= 0.5 * g[d + 1] && -g[d] * std::pow(back, static_cast<double>(d)) <= touch;
+  };
   for (std::size_t d = 1; d < g.size(); ++d) {
     lower = std::max(lower, size[d]);
     const double rounding =
         patience * std::max({kNothing * size[d], kLeast * lower, kOutgrown * most}) + (d == 1 ? first : 0.0);
-    if (std::abs(g[d]) > rounding) {
+    if (std::abs(g[d]) > rounding && !touches(d)) {
       if (g[d] < 0.0) bound.falls = static_cast<int>(d);
       return;
     }
@@ -268,7 +274,9 @@ bool FrictionSeries::pass(const Change& change, const Assembler& assembler, Eval
     Contact* first = nullptr;  // the contact that breaks away first; the others are asked again
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       Contact& other = contacts_[i];
-      if (!rested[i] || other.stuck || other.tied || !breaks_away(i)) continue;
+      // From an engagement of zero its torque does not jump.
+      const bool jumps = breaks_away(i) && other.capacity[0] > 0.0;
+      if (!rested[i] || other.stuck || other.tied || !jumps) continue;
       if (!first || static_cast<int>(i) == change.contact) first = &other;
     }
     released = first != nullptr;
@@ -300,7 +308,13 @@ void FrictionSeries::pass_derivative(const Change& change, int order, EvaluatedS
     } else if (c.tie >= 0) {
       gears.push_back(gear_derivative(i, change, order));
     } else if (c.tied) {
-      near = c.sign > 0 ? 1 : 2;
+      // Its other bound is the same as far as the contact holds nothing.
+      const Limits most = limits(i, false);
+      const auto first = c.capacity.begin(),
+                 behind = first + std::min<std::ptrdiff_t>(order, c.capacity.size());
+      const bool both =
+          most.low == most.high || std::all_of(first, behind, [](double g) { return g == 0.0; });
+      near = both ? 3 : c.sign > 0 ? 1 : 2;
     } else if (c.stuck) {
       for (const Bound& b : c.bounds) {
         bool zero = chosen && b.what == change.what;

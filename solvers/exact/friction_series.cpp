@@ -392,7 +392,7 @@ double FrictionSeries::add(const TaylorSeries& series, int k, double factor, dou
       const SlidingLine line = sliding_line(law(i), c.segment);
       c.torque[d] = c.sign * line.at_zero * g;
       if (line.slope != 0.0) {
-        c.slip[d] = (k - 1) / h_ * value_along(c.z, series.coefficients(k - 1)) + (d < 2 ? c.known[d] : 0.0);
+        c.slip[d] = slip_term(c, series, d);
         for (std::size_t j = 0; j <= std::min(d, c.capacity.size() - 1); ++j)
           c.torque[d] += line.slope * c.capacity[j] * c.slip[d - j];
       }
@@ -432,6 +432,25 @@ double FrictionSeries::add(const TaylorSeries& series, int k, double factor, dou
     if (loss.unit_loss != 0.0) hold_by(loss, loss.unit_loss * torque[j]);
   }
   return kWholeTerm;
+}
+
+void FrictionSeries::note_left_out(const TaylorSeries& series, int k, double factor,
+                                   std::array<double, 2>& most) const {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Contact& c = contacts_[i];
+    if (c.open || c.stuck || c.tied || c.tie >= 0) continue;
+    const double slope = sliding_line(law(i), c.segment).slope;
+    double left = 0.0;
+    for (std::size_t j = 1; j < c.capacity.size() && slope != 0.0; ++j) {
+      if (c.capacity[j] == 0.0) continue;
+      for (std::size_t d = idx(std::max(0, k - 1 - static_cast<int>(j))); d < idx(k); ++d)
+        left += std::abs(slope * c.capacity[j] * slip_term(c, series, d));
+    }
+    for (const Entry& e : c.gain) {
+      double& largest = most[idx(series.kind(e.index))];
+      largest = std::max(largest, std::abs(factor * e.coeff * left));
+    }
+  }
 }
 
 double FrictionSeries::carried() const {

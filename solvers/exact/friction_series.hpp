@@ -72,6 +72,9 @@ class FrictionSeries final : public TermForces {
   int known_degree() const override { return known_degree_; }
   /// Adds the contacts' part to term k of the series, factor = h^2/(k (k - 1)).
   double add(const TaylorSeries& series, int k, double factor, double* term) override;
+  /// Products of slip speeds with powers of an engagement: between them terms may be zero.
+  void note_left_out(const TaylorSeries& series, int k, double factor,
+                     std::array<double, 2>& most) const override;
   /// After the series was expanded from a state: slip speeds, and bounds. What the series' forces differ from those
   /// evaluated there (their projection) counts as rounding of bounds that stand at zero.
   void expand(const TaylorSeries& series, const State& from);
@@ -165,6 +168,11 @@ class FrictionSeries final : public TermForces {
   Limits limits(std::size_t i, bool loose) const;
   /// Whether it holds more at rest than it carries where it begins to slide.
   bool breaks_away(std::size_t i) const;
+  /// Coefficient d of the slip speed, from the series.
+  double slip_term(const Contact& c, const TaylorSeries& series, std::size_t d) const {
+    const int k = static_cast<int>(d) + 1;
+    return k / h_ * value_along(c.z, series.coefficients(k)) + (d < c.known.size() ? c.known[d] : 0.0);
+  }
   double slip_of(const Contact& c, const Assembler& assembler, const Vector& v) const;
   /// at_rest: contacts known to be; others are where their slip is rounding, or within `slack` of zero.
   void resolve(const Assembler& assembler, EvaluatedState& point, const std::vector<char>& at_rest,
@@ -177,7 +185,7 @@ class FrictionSeries final : public TermForces {
   void factor_stuck();
   void find_bounds(std::size_t i);
   static void clean(Bound& bound, const std::vector<double>& size, double zero, double first, bool on_it,
-                    double patience = 1.0);
+                    double patience = 1.0, double touch = 0.0);
   double heat(const Contact& contact, double s) const;
   // Of gears: friction_gears.cpp.
   void find_gears();

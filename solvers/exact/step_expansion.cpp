@@ -198,7 +198,9 @@ StepExpansion::Attempt StepExpansion::attempt(const EvaluatedState& from, const 
     if (got == h && (expanded.turns_back(series) || known.came_further(series))) return {h, true};
     const double of_jump = std::max(share, kJump * limits.tolerance);
     const auto as_got = [&] {
-      return Attempt{.h = got, .longer = tells_length ? fitting() : StepLength::kUnlimited};
+      return Attempt{.h = got,
+                     .longer = tells_length ? fitting() : StepLength::kUnlimited,
+                     .stands = got > 0.0 && shortens()};
     };
     // What leaves too much: a shorter step.
     const auto shorten = [&]() -> Attempt {

@@ -53,6 +53,7 @@ class StepExpansion {
     bool again = false;
     double longer =
         StepLength::kUnlimited;  ///< what is projected bears a next step of so many times the length
+    bool stands = false;  ///< the series was expanded over h, and makes the step also where h is shorter
   };
   /// Expands from `from`, where known was located, over h [s].
   Attempt attempt(const EvaluatedState& from, const LawSeries& laws, double h, const Limits& limits);
@@ -108,10 +109,6 @@ class StepExpansion {
   std::optional<double> first_knot(double end);
   /// Time [s] on either side of the knot last found for which rounding of the angle leaves the side open.
   double knot_clearance() const { return knot_clearance_; }
-  /// A step that the series does not hold for can be shortened to what it does.
-  bool shortens() const {
-    return !known.projects() && !known.expanded().active() && smooth.empty() && expanded.empty();
-  }
   /// Work of all that acts, from 0 to s; end: what was evaluated at s.
   LawWork work(const LawSeries& laws, double s, const EvaluatedState& end);
   /// First change of a step that is swept, and the s where the step ends. None: passes have to tell. t: time at its start;
@@ -133,6 +130,10 @@ class StepExpansion {
   KinkResponse kinks;
 
  private:
+  /// A step that the series does not hold for can be shortened to what it does.
+  bool shortens() const {
+    return !known.projects() && !known.expanded().active() && smooth.empty() && expanded.empty();
+  }
   bool attempt_sweep(const EvaluatedState& from, const LawSeries& laws, double h, const Limits& limits,
                      Attempt& made);
   /// How far, at most, what is known of kinks at the step's end leaves the motion along a row inside: itself, and its rate by s.

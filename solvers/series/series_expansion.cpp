@@ -162,8 +162,10 @@ double TaylorSeries::expand(const Vector& z, const Vector& v, double h, double t
         excess_of(left_out(k), k + 1) <= 1.0)
       return end(k, h);
   }
-  // The last two terms are too large: over r h they are r^k times as large.
+  // The last two terms are too large, or what is left out: over r h they are r^k times as large.
   double r = 1.0;
+  if (const double left = products ? excess_of(left_out(kMaxDegree), kMaxDegree + 1) : 0.0; left > 1.0)
+    r = std::pow(left, -1.0 / kMaxDegree);
   for (const int k : {kMaxDegree - 1, kMaxDegree}) {
     const double most = std::max(excess(k), products ? added_excess(k) : 0.0);
     if (most > 1.0) r = std::min(r, std::pow(most, -1.0 / (k - 1)));

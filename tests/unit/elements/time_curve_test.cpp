@@ -1,4 +1,5 @@
 // TimeCurve: a formula over time by cubics, and friction's engagement by it.
+#include <drev/core/units.hpp>
 #include <drev/elements/friction/clutch.hpp>
 #include <drev/elements/time_curve.hpp>
 
@@ -55,6 +56,30 @@ TEST_CASE("A formula over time: jumps and kinks at its breakpoints, one that is 
   CHECK(curve.at(0.499999)[0] == 2.0);
   CHECK(curve.at(0.5)[0] == 0.125);
   CHECK(curve.at(0.5)[1] == Approx(0.25));
+}
+
+TEST_CASE("A formula over time: each side of a kink at a breakpoint or an end has its own slope") {
+  const auto kinked = [](Dual (*f)(const Dual&), double at, double to) {
+    TimeCurve::Params p{.function = f, .from = 0.0, .to = to};
+    if (at < to) p.breakpoints = {at};
+    CHECK(curve_findings(p) == "");
+    return TimeCurve(p);
+  };
+  const TimeCurve v = kinked([](const Dual& t) { return abs(t - 1.0); }, 1.0, 2.0);
+  CHECK(v.knots() == std::vector<double>{0.0, 1.0, 2.0});
+  CHECK(v.at(0.75)[1] == Approx(-1.0));
+  CHECK(v.at(1.0)[0] == 0.0);
+  CHECK(v.at(1.0)[1] == Approx(1.0));
+  const TimeCurve rising = kinked([](const Dual& t) { return t < 0.5 ? Dual(0.5) : t; }, 0.5, 2.0);
+  CHECK(rising.at(0.25)[0] == 0.5);
+  CHECK(rising.at(1.25)[0] == Approx(1.25));
+  CHECK(kinked([](const Dual& t) { return abs(sin(kPi * t)); }, 1.0, 1.0).at(0.25)[0] ==
+        Approx(std::sqrt(0.5)).epsilon(1e-10));
+  // What is refused is not called negative as well.
+  const std::string found =
+      curve_findings({.function = [](const Dual& t) { return abs(t - 0.3); }, .from = 0.0, .to = 2.0});
+  CHECK(test::contains(found, "none of the breakpoints"));
+  CHECK_FALSE(test::contains(found, "must be >= 0"));
 }
 
 TEST_CASE("A formula over time that is not finite somewhere is refused") {

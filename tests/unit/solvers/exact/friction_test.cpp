@@ -64,6 +64,40 @@ TEST_CASE("Friction: a clutch engages, constant torque, ramp, torque falling wit
   CHECK(open.summary.friction_events[0].becomes == "open");
 }
 
+TEST_CASE("Friction: a torque that rises with the slip is a damper, on either side of zero slip") {
+  // As long as the run, the first step behind zero slip would be longer than the damper's rate allows.
+  for (const double t_end : {0.5, 1.0, 1.1, 10.0}) {
+    Model m("brake");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
+    m.add<GroundSpring>("spring", {"n"}, {.stiffness = 10.0, .damping = 2.0});
+    m.set_initial("n", 0.5, 0.5);
+    Model damped = m;
+    m.add<Brake>("brake", {"n"}, {.slip_speeds = {0.0, 10.0}, .sliding_torques = {0.0, 10.0}});
+    damped.add<Dashpot>("damper", {"n"}, {.damping = 1.0});
+    const FrictionRun r = ran_to(m.build(), t_end), expected = ran_to(damped.build(), t_end);
+    INFO(t_end);
+    CHECK(r.state.z[0] == Approx(expected.state.z[0]).epsilon(1e-10).margin(1e-12));
+    CHECK(r.state.v[0] == Approx(expected.state.v[0]).epsilon(1e-10).margin(1e-12));
+  }
+}
+
+TEST_CASE("Friction: an engagement by a power of the time, whose series has gaps") {
+  // J w' = -t^n w
+  for (const double n : {1.0, 2.0, 3.0}) {
+    Model m("brake");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
+    m.set_initial("n", 0.0, 5.0);
+    m.add<Brake>("brake", {"n"},
+                 {.slip_speeds = {0.0, 10.0},
+                  .sliding_torques = {0.0, 10.0},
+                  .engagement_formula = TimeCurve(
+                      {.function = [n](const Dual& t) { return pow(t, n); }, .from = 0.0, .to = 1.0})});
+    CHECK(ran_to(m.build(), 1.0).state.v[0] == Approx(5.0 * std::exp(-1.0 / (n + 1.0))).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("Friction: stick-slip with a break-away torque (case F6)") {
   Model m("stick-slip");
   m.add_node("mass");
@@ -341,6 +375,44 @@ TEST_CASE("Friction: a stuck clutch costs no more than the shaft that it could b
   CHECK(stuck.summary.solves <= shaft.summary.solves);
   const double omega = std::sqrt(300.0);
   CHECK(stuck.state.z[1] == Approx(std::sin(5.0 * omega) / omega).epsilon(1e-12));
+}
+
+TEST_CASE("Friction: contacts side by side that hold nothing at the start let go, either way") {
+  // Both bounds of each meet at zero: by their torque, by their engagement, or by both.
+  const Brake::Params none{.torque = 0.0}, viscous{.slip_speeds = {0.0, 9.0}, .sliding_torques = {0.0, 9.0}};
+  const Brake::Params ramp{.torque = 0.0, .engagement = TimeTable({0.0, 1.0}, {0.0, 1.0})};
+  const Brake::Params weak{
+      .torque = 0.1, .break_away_ratio = 2.0, .engagement = TimeTable({0.0, 1.0}, {0.0, 1.0})};
+  const auto angle = [](const Brake::Params& first, const Brake::Params& second, double load) {
+    Model m("brakes");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
+    m.add<Brake>("first", {"n"}, first);
+    m.add<Brake>("second", {"n"}, second);
+    m.add<AppliedTorque>("load", {"n"}, {.table = TimeTable({0.0, 1.0}, {0.0, load})});
+    return ran_to(m.build(), 1.0).state.z[0];
+  };
+  for (const double load : {1.0, -1.0}) {
+    CHECK(angle(none, ramp, load) == Approx(load / 6.0).epsilon(1e-12));
+    CHECK(angle(ramp, none, load) == Approx(load / 6.0).epsilon(1e-12));
+    CHECK(angle(none, weak, load) == Approx(0.9 * load / 6.0).epsilon(1e-12));
+    // v' = t - 2 v
+    const double damped = 0.125 * (1.0 - std::exp(-2.0));
+    CHECK(angle(viscous, viscous, load) == Approx(load * damped).epsilon(1e-12));
+  }
+}
+
+TEST_CASE(
+    "Friction: a torque that touches the break-away torque and falls lets nothing go, at the start as "
+    "later") {
+  for (const double phase : {0.0, -0.5 * kPi}) {
+    Model m("held");
+    m.add_node("n");
+    m.add<Inertia>("J", {"n"}, {.inertia = 1.0});
+    m.add<Brake>("brake", {"n"}, {.torque = 10.0, .break_away_ratio = 2.0});
+    m.add<AppliedTorque>("load", {"n"}, {.harmonics = {{0.5, 20.0, phase}}});
+    CHECK(ran_to(m.build(), 0.9).state.z[0] == 0.0);
+  }
 }
 
 TEST_CASE("Friction: methods that cannot take it say so, and speeds that a freewheel forbids are refused") {
