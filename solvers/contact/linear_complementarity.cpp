@@ -97,6 +97,14 @@ class Lemke {
   std::vector<Eigen::Index> basis_;
 };
 
+/// Whether rows depend on each other within rounding.
+bool singular(const Eigen::MatrixXd& rows) {
+  if (rows.size() == 0) return false;
+  const Eigen::MatrixXd inverse =
+      lu_solve(rows, Eigen::MatrixXd(Eigen::MatrixXd::Identity(rows.rows(), rows.cols())));
+  return !(kPivot * inverse.cwiseAbs().maxCoeff() * rows.cwiseAbs().maxCoeff() < 1.0);
+}
+
 }  // namespace
 
 std::optional<ComplementarySolution> solve_complementarity(const Eigen::MatrixXd& m,
@@ -126,8 +134,8 @@ std::optional<ComplementarySolution> try_every_set(const Eigen::MatrixXd& m, con
       found.basic.push_back(bit(set, i));
       if (bit(set, i) == 1) basic.push_back(i);
     }
+    const Eigen::MatrixXd rows = m(basic, basic);
     if (!basic.empty()) {
-      const Eigen::MatrixXd rows = m(basic, basic);
       const Vector right = -q(basic);
       found.z(basic) = lu_solve(rows, right);
     }
@@ -140,7 +148,7 @@ std::optional<ComplementarySolution> try_every_set(const Eigen::MatrixXd& m, con
       holds = holds && (bit(set, i) == 1 ? std::abs(w[i]) <= slack && found.z[i] >= -kNothing * largest
                                          : w[i] >= -slack);
     }
-    if (!holds) continue;
+    if (!holds || singular(rows)) continue;
     found.z = found.z.cwiseMax(0.0);
     return found;
   }

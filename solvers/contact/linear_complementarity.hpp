@@ -23,7 +23,8 @@ struct ComplementarySolution {
 std::optional<ComplementarySolution> solve_complementarity(const Eigen::MatrixXd& m,
                                                            const Eigen::VectorXd& q);
 /// The same by trying every set of basic variables, whatever M is: those first that differ at the fewest places from `wanted`, 0 or 1 by
-/// variable, any other number where it does not matter. nullopt: there is no solution, or more than kMostTried variables.
+/// variable, any other number where it does not matter. Sets whose equations depend on each other within rounding are left
+/// out: what each of their variables is would be chance. nullopt: there is no solution, or more than kMostTried variables.
 inline constexpr int kMostTried = 12;
 std::optional<ComplementarySolution> try_every_set(const Eigen::MatrixXd& m, const Eigen::VectorXd& q,
                                                    const std::vector<char>& wanted);

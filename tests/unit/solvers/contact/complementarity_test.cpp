@@ -51,6 +51,9 @@ TEST_CASE("Every set of variables: a solution of any matrix that has one, with w
   CHECK(try_every_set(negative, ones, {0, 1})->z == Eigen::Vector2d(0.0, 1.0));
   CHECK(try_every_set(negative, ones, {1, 0})->basic == std::vector<char>{1, 0});
   CHECK(!try_every_set(negative, -ones, {1, 0}));
+  // Rows that are the same within rounding: one of them carries the load, though both are wanted.
+  const Eigen::Matrix2d same{{1.0, 1.0}, {1.0, 1.0 + 1e-15}};
+  CHECK(try_every_set(same, -ones, {1, 1})->basic == std::vector<char>{1, 0});
   const Eigen::Index many = kMostTried + 1;
   CHECK(!try_every_set(Eigen::MatrixXd::Identity(many, many), Eigen::VectorXd::Ones(many), {}));
   std::mt19937 random(11);
