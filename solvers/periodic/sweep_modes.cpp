@@ -20,7 +20,7 @@ namespace {
 constexpr int kMostUnknowns = 400;   // unknowns up to which damped modes are dense; beyond, one by one
 constexpr int kFirstModes = 16;      // number of undamped modes that are found first
 constexpr int kMostModes = 128;      // largest number of undamped modes that are found
-constexpr int kSteps = 8;            // from the matrices' stiffnesses to k* of a mode
+constexpr int kFewSteps = 8;         // from the matrices' stiffnesses to k* of a mode
 constexpr double kSameMode = 1e-9;   // relative difference of lambda of one and the same mode [-]
 constexpr int kModeSpeeds = 9;       // number of speeds for modes if loads depend on the speed
 constexpr int kMostModeSpeeds = 33;  // largest number with those at which their damping bends
@@ -58,10 +58,10 @@ std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const std::vecto
 }
 
 /// Takes a mode of the model's own matrices, of complex stiffnesses those in time, on to that with k* at its frequency and the
-/// mean torques of the speed, in steps small enough that it stays the same one. False: lost on the way, and both are as given.
-bool take_on(const System& system, LinearResponse& response, DampedPairs& pairs, double speed,
+/// mean torques of the speed, in steps. False: lost on the way, and both are as given.
+bool take_on(const System& system, LinearResponse& response, DampedPairs& pairs, double speed, int steps,
              std::complex<double>& lambda, Eigen::VectorXcd& shape) {
-  const int steps = system.frequency_terms().empty() ? 1 : kSteps;
+  if (system.frequency_terms().empty()) steps = 1;
   std::complex<double> found = lambda;
   Eigen::VectorXcd its = shape;
   for (int step = 1; step <= steps; ++step) {
@@ -71,6 +71,46 @@ bool take_on(const System& system, LinearResponse& response, DampedPairs& pairs,
   }
   lambda = found, shape = its;
   return true;
+}
+
+/// Takes all modes on so, those up to `highest` [rad/s] in steps small enough that no two of them become the same one. Modes above it
+/// that are lost on the way stay as they are. False: some below it, which are 0 then.
+bool take_all_on(const System& system, LinearResponse& response, DampedPairs& pairs, double speed,
+                 double highest, const std::function<void()>& pause, DampedModeSet& set) {
+  constexpr double kLike = 0.999;  // likeness of two shapes that are one [-]
+  Eigen::MatrixXcd given = Eigen::MatrixXcd::Zero(system.size(), set.shapes.cols());
+  for (int node = 0; node < system.node_count(); ++node)
+    if (const NodeMap& map = system.node_map(node); map.unknown >= 0)
+      given.row(map.unknown) = set.shapes.row(node) / map.coeff;
+  Eigen::VectorXcd lambda(given.cols());
+  Eigen::MatrixXcd shapes;
+  std::vector<Eigen::Index> lost;
+  for (const int steps : {kFewSteps, 8 * kFewSteps, 64 * kFewSteps}) {
+    lost.clear();
+    shapes = given;
+    for (Eigen::Index m = 0; m < given.cols(); ++m) {
+      pause();
+      lambda[m] = set.modes[static_cast<std::size_t>(m)].lambda;
+      const bool matters = std::abs(lambda[m]) <= highest;
+      Eigen::VectorXcd shape = given.col(m);
+      bool good = take_on(system, response, pairs, speed, matters ? steps : kFewSteps, lambda[m], shape);
+      for (Eigen::Index j = 0; j < m && good && matters; ++j)
+        good = std::abs(lambda[j] - lambda[m]) > kSameMode * std::abs(lambda[m]) ||
+               std::abs(shape.dot(shapes.col(j))) < kLike * shape.norm() * shapes.col(j).norm();
+      if (good || !matters) shapes.col(m) = shape;
+      if (!good && matters) lost.push_back(m);
+    }
+    if (lost.empty()) break;
+  }
+  for (const Eigen::Index m : lost) lambda[m] = 0.0;
+  for (Eigen::Index m = 0; m < given.cols(); ++m) {
+    set.modes[static_cast<std::size_t>(m)].lambda = lambda[m];
+    for (int node = 0; node < system.node_count(); ++node) {
+      set.shapes(node, m) = 0.0;
+      for (const Entry& e : system.row_of(node)) set.shapes(node, m) += e.coeff * shapes(e.index, m);
+    }
+  }
+  return lost.empty();
 }
 
 /// Speeds between given ones at which a load that states how steep it may be over a range is steeper than at these: a gate may open
@@ -309,7 +349,8 @@ void number_modes(SweepModes& modes, DampedPoles& poles) {
 }
 
 SweepModes follow_modes(const System& system, LinearResponse& response, const std::vector<double>& speeds,
-                        const std::function<void()>& pause, LinearSweep& sweep, DampedPoles& poles) {
+                        double highest, const std::function<void()>& pause, LinearSweep& sweep,
+                        DampedPoles& poles) {
   SweepModes modes;
   const ModeSpeeds mode_speeds(system, response, speeds);
   modes.speeds = mode_speeds.find();
@@ -318,7 +359,12 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
   std::vector<char> swings;                         // for each: it does at the last speed
   for (Eigen::Index i = 0; i < modes.speeds.size(); ++i) {
     pause();
-    const DampedModeSet set = solve_damped_modes(system, {.damping = load_damping(system, modes.speeds[i])});
+    DampedModeSet set = solve_damped_modes(system, {.damping = load_damping(system, modes.speeds[i])});
+    if (!system.frequency_terms().empty() &&
+        !take_all_on(system, response, poles.pairs, modes.speeds[i], highest, pause, set))
+      sweep.modes_note =
+          "some modes were lost under the stiffness that couplings have at a speed: a resonance that is "
+          "narrower than the distance of the speeds can be missed";
     note_growth(modes, i, fastest_growth(system, set), sweep);
     std::vector<Eigen::Index> from = matched(shapes, swings, set.shapes);
     const Eigen::Index more = std::count(from.begin(), from.end(), -1);
@@ -330,19 +376,12 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
       const Eigen::Index mode = from[m] >= 0 ? from[m] : next++;
       lambda[mode] = set.modes[m].lambda;
       shapes.col(mode) = set.shapes.col(static_cast<Eigen::Index>(m));
-      swings[static_cast<std::size_t>(mode)] = 1;
+      swings[static_cast<std::size_t>(mode)] = lambda[mode] != 0.0;
     }
     Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), shapes.cols());
     for (int node = 0; node < system.node_count(); ++node)
       if (const NodeMap& map = system.node_map(node); map.unknown >= 0)
         of_unknowns.row(map.unknown) = shapes.row(node) / map.coeff;
-    for (Eigen::Index mode = 0; mode < lambda.size() && !system.frequency_terms().empty(); ++mode) {
-      if (lambda[mode] == 0.0) continue;
-      pause();
-      Eigen::VectorXcd shape = of_unknowns.col(mode);
-      take_on(system, response, poles.pairs, modes.speeds[i], lambda[mode], shape);
-      of_unknowns.col(mode) = shape;
-    }
   }
   number_modes(modes, poles);
   return modes;
@@ -380,7 +419,7 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
       pause();
       std::complex<double> lambda = last[m];
       Eigen::VectorXcd shape = shapes[m];
-      const bool settled = take_on(system, response, pairs, modes.speeds[i], lambda, shape);
+      const bool settled = take_on(system, response, pairs, modes.speeds[i], kFewSteps, lambda, shape);
       of_unknowns.col(mode) = shape;
       // What it does not swing as is no guess for the next speed.
       if (!settled) continue;
@@ -419,7 +458,7 @@ void find_sweep_modes(const System& system, LinearResponse& response, const std:
     const double highest = sweep.orders.back() * sweep.speeds.back();
     sweep.modes = system.size() > kMostUnknowns
                       ? follow_pairs(system, response, sweep.speeds, highest, pause, sweep, poles)
-                      : follow_modes(system, response, sweep.speeds, pause, sweep, poles);
+                      : follow_modes(system, response, sweep.speeds, highest, pause, sweep, poles);
     const Eigen::Index count = sweep.modes.lambda.rows();
     if (system.size() > kMostUnknowns && count == kMostModes &&
         sweep.modes.lambda.row(count - 1).imag().maxCoeff() < highest)

@@ -24,6 +24,7 @@ constexpr double kSmallPeak = 1e-3;     // smallest peak relative to the section
 constexpr double kSmallHeat = 0.1;      // smallest heat followed relative to the section's largest one [-]
 constexpr double kSameSeed = 1e-2;      // part of a mode's half width below which two seeds are one [-]
 constexpr double kPeakSpeed = 1e-7;     // tolerance of a peak's speed relative to it [-]
+constexpr double kSameTop = 1e-6;       // relative difference of criticals' speeds that are one top [-]
 constexpr double kSameSpeed = 1e-10;    // relative difference of speeds that are one but for rounding [-]
 constexpr double kOwnPart = 0.1;        // smallest own part of an amplitude whose top is the mode's [-]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -157,6 +158,12 @@ class Search {
     }
     std::stable_sort(sweep_.criticals.begin(), sweep_.criticals.end(),
                      [](const SweepCritical& a, const SweepCritical& b) { return a.speed < b.speed; });
+    // Where a load's kink makes a mode jump, the jump and a meeting beside it may have one top.
+    const auto same = [](const SweepCritical& a, const SweepCritical& b) {
+      return a.mode == b.mode && a.order == b.order && b.speed - a.speed <= kSameTop * b.speed;
+    };
+    sweep_.criticals.erase(std::unique(sweep_.criticals.begin(), sweep_.criticals.end(), same),
+                           sweep_.criticals.end());
   }
 
  private:

@@ -186,3 +186,27 @@ TEST_CASE("A mode that dips below an order between two speeds has both criticals
     CHECK(60.0 * sweep.criticals[upper ? 1 : 0].frequency_Hz == Approx(inside).epsilon(1e-3));
   }
 }
+
+TEST_CASE("Modes that pass each other between the torque of the matrices and the mean torque stay two",
+          "[sweep_kinks]") {
+  // Discs of 0.5, 10 and 0.5 kg m2 on stiffnesses that are the same without torque; under 100 N m the first is three times as stiff.
+  Model m("three discs");
+  for (const char* node : {"a", "b", "c"}) m.add_node(node);
+  m.set_reference("a", constant_speed(rpm(1000.0)));
+  m.add<Inertia>("J_a", {"a"}, {.inertia = 0.5});
+  m.add<Inertia>("J_b", {"b"}, {.inertia = 10.0});
+  m.add<Inertia>("J_c", {"c"}, {.inertia = 0.5});
+  m.add<ElasticCoupling>("s0", {"a", "b"},
+                         {.material = {.by_mean_torque = {{0.0, 100.0}, {1000.0, 3000.0}, {0.0, 0.0}}}});
+  m.add<ShaftSpring>("s1", {"b", "c"}, {.stiffness = 1000.0});
+  m.add<EngineOrderTorque>("gas", {"a"},
+                           {.harmonics = {{1.0, 10.0, 0.0}}, .mean = 100.0, .twist_feedback = false});
+  const LinearSweep sweep =
+      sweep_linear(m.build(), {.speeds = speeds_by(200.0, 100.0, 2000.0), .orders = {1.0}, .balance = "b"});
+  // w^4 - p w^2 + q = 0 with p the trace of K / M, q = k0 k1 (sum of inertias) / (product of inertias).
+  const double k0 = 3000.0, k1 = 1000.0, p = 2.1 * (k0 + k1), q = 4.4 * k0 * k1;
+  const double root = std::sqrt(p * p - 4.0 * q);
+  REQUIRE(sweep.modes.lambda.rows() == 2);
+  CHECK(sweep.modes.lambda(0, 0).imag() == Approx(std::sqrt(0.5 * (p - root))).epsilon(1e-9));
+  CHECK(sweep.modes.lambda(1, 0).imag() == Approx(std::sqrt(0.5 * (p + root))).epsilon(1e-9));
+}
