@@ -69,8 +69,8 @@ TEST_CASE("A formula by steps: every operation, with its slopes, and as text") {
   CHECK(r.by_x == Approx((expected(x + d, w, t) - expected(x - d, w, t)) / (2.0 * d)).epsilon(1e-8));
   CHECK(r.by_x_dot == Approx((expected(x, w + d, t) - expected(x, w - d, t)) / (2.0 * d)).epsilon(1e-8));
   CHECK(f.text(std::vector<std::string>{"x", "w", "t"}) ==
-        "(((sqrt(abs(w)) + (exp((-t)) * tan(x) / ((((log(w) + 2))^(1.5))))) - max(x, w) * min(sin(x), "
-        "cos(x))) + tanh(x) * atan(w))");
+        "sqrt(abs(w)) + exp(-t) * tan(x) / (log(w) + 2)^1.5 - max(x, w) * min(sin(x), cos(x)) + tanh(x) * "
+        "atan(w)");
   CHECK(Formula().at({}).value == 0.0);
   CHECK_THROWS_AS(Formula({{.op = Op::add, .a = 0, .b = 1}}), std::invalid_argument);
 }
