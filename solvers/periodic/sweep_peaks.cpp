@@ -206,7 +206,7 @@ class Search {
       if (other.mode == m && other.order == sweep_.orders[k] &&
           std::abs(other.speed - speed) <= kSameSeed * std::abs(lambda.real()) / other.order)
         return;
-    response_.vibration(speed, point_, static_cast<int>(k));
+    response_.vibration((1.0 + LinearResponse::kNear) * speed, point_, static_cast<int>(k));
     if (response_.forces().isZero(0.0)) return;  // a gate that is closed here, loads that cancel
     SweepCritical critical;
     critical.mode = static_cast<int>(m);
