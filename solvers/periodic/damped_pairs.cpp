@@ -96,9 +96,13 @@ DampedPole DampedPoles::at(const SweepModes& modes, Eigen::Index mode, double sp
   std::vector<Eigen::Index> same{mode};
   for (Eigen::Index j = 0; j < all.size(); ++j)
     if (j != mode && coincides(all[j], all[mode])) same.push_back(j);
-  DampedPole pole{matrices(modes.speeds[nearest], all[mode].imag()).damping, all(same),
-                  shapes[column](Eigen::all, same)};
-  if (modes.speeds.size() == 1) return pole;
+  DampedPole pole{{}, all(same), shapes[column](Eigen::all, same)};
+  // Asked for only where it is needed: loads that are called are looked at anew at another speed.
+  const auto damping_of = [&](double at, Complex of) { return matrices(at, of.imag()).damping; };
+  if (modes.speeds.size() == 1) {
+    pole.damping = damping_of(modes.speeds[nearest], all[mode]);
+    return pole;
+  }
   const Complex guess = modes.at(mode, speed);
   DampedPole here{{}, pole.lambda, pole.shapes};
   Eigen::Index count = 0;
@@ -110,6 +114,7 @@ DampedPole DampedPoles::at(const SweepModes& modes, Eigen::Index mode, double sp
       good &=
           all[k] == 0.0 || coincides(all[k], all[mode]) || std::abs(found - all[k]) > std::abs(found - guess);
     if (!good && j == 0) {
+      pole.damping = damping_of(modes.speeds[nearest], all[mode]);
       pole.lambda.setConstant(guess);
       return pole;
     }
@@ -117,9 +122,9 @@ DampedPole DampedPoles::at(const SweepModes& modes, Eigen::Index mode, double sp
     here.lambda[count] = found;
     here.shapes.col(count++) = shape;
   }
-  here.damping = matrices(speed, here.lambda[0].imag()).damping;
-  here.lambda.conservativeResize(count);
-  here.shapes.conservativeResize(Eigen::NoChange, count);
+  here.damping = damping_of(speed, here.lambda[0]);
+  here.lambda = here.lambda.head(count).eval();
+  here.shapes = here.shapes.leftCols(count).eval();
   return here;
 }
 

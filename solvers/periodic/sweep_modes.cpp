@@ -73,15 +73,21 @@ bool take_on(const System& system, LinearResponse& response, DampedPairs& pairs,
   return true;
 }
 
+/// Shapes over all nodes as shapes over the unknowns.
+Eigen::MatrixXcd shapes_of_unknowns(const System& system, const Eigen::MatrixXcd& shapes) {
+  Eigen::MatrixXcd found = Eigen::MatrixXcd::Zero(system.size(), shapes.cols());
+  for (int node = 0; node < system.node_count(); ++node)
+    if (const NodeMap& map = system.node_map(node); map.unknown >= 0)
+      found.row(map.unknown) = shapes.row(node) / map.coeff;
+  return found;
+}
+
 /// Takes all modes on so, those up to `highest` [rad/s] in steps small enough that no two of them become the same one. Modes above it
 /// that are lost on the way stay as they are. False: some below it, which are 0 then.
 bool take_all_on(const System& system, LinearResponse& response, DampedPairs& pairs, double speed,
                  double highest, const std::function<void()>& pause, DampedModeSet& set) {
   constexpr double kLike = 0.999;  // likeness of two shapes that are one [-]
-  Eigen::MatrixXcd given = Eigen::MatrixXcd::Zero(system.size(), set.shapes.cols());
-  for (int node = 0; node < system.node_count(); ++node)
-    if (const NodeMap& map = system.node_map(node); map.unknown >= 0)
-      given.row(map.unknown) = set.shapes.row(node) / map.coeff;
+  const Eigen::MatrixXcd given = shapes_of_unknowns(system, set.shapes);
   Eigen::VectorXcd lambda(given.cols());
   Eigen::MatrixXcd shapes;
   std::vector<Eigen::Index> lost;
@@ -378,10 +384,7 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
       shapes.col(mode) = set.shapes.col(static_cast<Eigen::Index>(m));
       swings[static_cast<std::size_t>(mode)] = lambda[mode] != 0.0;
     }
-    Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), shapes.cols());
-    for (int node = 0; node < system.node_count(); ++node)
-      if (const NodeMap& map = system.node_map(node); map.unknown >= 0)
-        of_unknowns.row(map.unknown) = shapes.row(node) / map.coeff;
+    poles.shapes.push_back(shapes_of_unknowns(system, shapes));
   }
   number_modes(modes, poles);
   return modes;

@@ -22,23 +22,28 @@ std::vector<double> speeds_by(double first, double step, double last) {
   return speeds;
 }
 
+/// A disc of 1 kg m2 on a shaft from a node at constant speed, with an order of 1 N m and a torque that follows its speed.
+System disc_on_shaft(double stiffness, double damping, double order, const TorqueCurve::Params& curve) {
+  Model m("disc");
+  m.add_node("a"), m.add_node("b");
+  m.constant_speed("a", rpm(525.0));
+  m.add<Inertia>("J", {"b"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = stiffness, .damping = damping});
+  m.add<TorqueCurve>("p", {"b"}, curve);
+  m.add<EngineOrderTorque>("gas", {"b"}, {.harmonics = {{order, 1.0, 0.0}}, .twist_feedback = false});
+  return m.build();
+}
+
 }  // namespace
 
 TEST_CASE("Damping that loads have at some speeds only counts for the modes and criticals there",
           "[sweep_kinks]") {
   // A disc of 1 kg m2 on 755 N m/rad: natural frequency 524.8 rpm at order 0.5, where only the curve between 500 and 550 rpm damps.
   constexpr double k = 755.0, damping = 0.1;
-  Model m("disc");
-  m.add_node("a"), m.add_node("b");
-  m.constant_speed("a", rpm(525.0));
-  m.add<Inertia>("J", {"b"}, {.inertia = 1.0});
-  m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = k, .damping = damping});
-  m.add<TorqueCurve>(
-      "p", {"b"},
+  const System disc = disc_on_shaft(
+      k, damping, 0.5,
       {.speeds = {0.0, rpm(502.0), rpm(552.0), rpm(1200.0)}, .torques = {0.0, 0.0, -100.0, -100.0}});
-  m.add<EngineOrderTorque>("gas", {"b"}, {.harmonics = {{0.5, 1.0, 0.0}}, .twist_feedback = false});
-  const LinearSweep sweep =
-      sweep_linear(m.build(), {.speeds = speeds_by(100.0, 50.0, 1100.0), .orders = {0.5}});
+  const LinearSweep sweep = sweep_linear(disc, {.speeds = speeds_by(100.0, 50.0, 1100.0), .orders = {0.5}});
   const double natural = std::sqrt(k), ratio = 0.5 * (damping + 100.0 / rpm(50.0)) / natural;
   double largest = 0.0;
   for (const Lambda lambda : sweep.modes.lambda.row(0))
@@ -57,18 +62,12 @@ TEST_CASE("A load that damps, or feeds a mode, between two speeds of the sweep a
   // As above, with kinks at the sweep's own speeds: slopes of -100 N m and back over 50 rpm, between which all speeds show none.
   constexpr double k = 755.0, damping = 0.1;
   const double slope = 100.0 / rpm(50.0), natural = std::sqrt(k);
-  Model m("disc");
-  m.add_node("a"), m.add_node("b");
-  m.constant_speed("a", rpm(525.0));
-  m.add<Inertia>("J", {"b"}, {.inertia = 1.0});
-  m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = k, .damping = damping});
-  m.add<TorqueCurve>("p", {"b"},
-                     {.speeds = {0.0, rpm(500.0), rpm(550.0), rpm(900.0), rpm(950.0), rpm(1200.0)},
-                      .torques = {0.0, 0.0, -100.0, -100.0, 0.0, 0.0}});
-  m.add<EngineOrderTorque>("gas", {"b"}, {.harmonics = {{0.5, 1.0, 0.0}}, .twist_feedback = false});
+  const System disc =
+      disc_on_shaft(k, damping, 0.5,
+                    {.speeds = {0.0, rpm(500.0), rpm(550.0), rpm(900.0), rpm(950.0), rpm(1200.0)},
+                     .torques = {0.0, 0.0, -100.0, -100.0, 0.0, 0.0}});
   for (const double step : {50.0, 500.0}) {
-    const LinearSweep sweep =
-        sweep_linear(m.build(), {.speeds = speeds_by(100.0, step, 1100.0), .orders = {0.5}});
+    const LinearSweep sweep = sweep_linear(disc, {.speeds = speeds_by(100.0, step, 1100.0), .orders = {0.5}});
     const double ratio = 0.5 * (damping + slope) / natural;
     REQUIRE(sweep.criticals.size() == 1);
     CHECK(sweep.criticals[0].damping_ratio == Approx(ratio).epsilon(1e-9));
@@ -137,19 +136,13 @@ TEST_CASE("A response that jumps where a gate's ramp begins has its peak at the 
   // |T| = |k + i c w| p / |k - w^2 + i (c - d) w| at the kink's upper side.
   constexpr double k = 10000.0, c = 20.0, torque = 100.0;
   const double d = torque / rpm(100.0), w = rpm(1000.0);
-  Model m("disc");
-  m.add_node("a"), m.add_node("b");
-  m.constant_speed("a", rpm(1000.0));
-  m.add<Inertia>("J", {"b"}, {.inertia = 1.0});
-  m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = k, .damping = c});
-  m.add<TorqueCurve>(
-      "p", {"b"},
+  const System disc = disc_on_shaft(
+      k, c, 1.0,
       {.speeds = {0.0, rpm(1000.0), rpm(1100.0), rpm(2000.0)}, .torques = {0.0, 0.0, torque, torque}});
-  m.add<EngineOrderTorque>("gas", {"b"}, {.harmonics = {{1.0, 1.0, 0.0}}, .twist_feedback = false});
   const double peak = std::hypot(k, c * w) / std::hypot(k - w * w, (c - d) * w);
   for (const double first : {800.0, 850.0}) {  // 1000 rpm is one of the speeds, or none
     const LinearSweep sweep =
-        sweep_linear(m.build(), {.speeds = speeds_by(first, 100.0, 1300.0), .orders = {1.0}});
+        sweep_linear(disc, {.speeds = speeds_by(first, 100.0, 1300.0), .orders = {1.0}});
     const SweepLargest largest = largest_half_range(sweep, 0);
     CHECK(largest.value == Approx(peak).epsilon(1e-6));
     CHECK(to_rpm(largest.speed) == Approx(1000.0).epsilon(1e-6));
