@@ -57,8 +57,64 @@ class RitzProjector {
     return std::move(system_);
   }
 
+  static System hold(const System& full, const std::vector<bool>& held, const Vector& damping,
+                     const Vector& stiffness) {
+    System system = full;
+    std::vector<int> place(held.size(), -1), kept;
+    for (std::size_t k = 0; k < held.size(); ++k)
+      if (!held[k]) place[k] = static_cast<int>(kept.size()), kept.push_back(static_cast<int>(k));
+    const auto count = static_cast<Eigen::Index>(kept.size()), known = full.zu_.mass.cols();
+    std::vector<Eigen::Triplet<double>> entries, ones;
+    std::vector<int> slots;
+    for (int j = 0; j < full.size(); ++j)
+      for (int s = full.pattern().outerIndexPtr()[j]; s < full.pattern().outerIndexPtr()[j + 1]; ++s)
+        if (const int i = full.pattern().innerIndexPtr()[s]; !held[idx(i)] && !held[idx(j)])
+          entries.emplace_back(place[idx(i)], place[idx(j)], 0.0), slots.push_back(s);
+    const auto pattern = std::make_shared<SparseMatrix>(count, count);
+    pattern->setFromTriplets(entries.begin(), entries.end());
+    system.pattern_ = pattern;
+    system.mass_ = full.mass_(slots);
+    system.damping_ = full.damping_(slots);
+    system.stiffness_ = full.stiffness_(slots);
+    if (damping.size() > 0) system.damping_ += damping(slots);
+    if (stiffness.size() > 0) system.stiffness_ += stiffness(slots);
+    for (std::size_t k = 0; k < kept.size(); ++k) ones.emplace_back(static_cast<int>(k), kept[k], 1.0);
+    SparseMatrix rows_kept(count, full.size());
+    rows_kept.setFromTriplets(ones.begin(), ones.end());
+    for (SparseMatrix* columns : {&system.zu_.mass, &system.zu_.damping, &system.zu_.stiffness})
+      *columns = (rows_kept * *columns).eval();
+    for (NodeMap& map : system.node_map_)
+      if (map.unknown >= 0) map.unknown = place[idx(map.unknown)];
+    system.rows_ = full.rows_(Eigen::all, kept);
+    for (ScalarTerm& term : system.scalars_)
+      for (Entry& e : term.z) e.index = place[idx(e.index)];
+    for (VaryingInertiaRow& row : system.varying_inertias_) row.unknown = place[idx(row.unknown)];
+    system.frequency_terms_.clear();
+    system.unknown_node_.clear();
+    for (const int k : kept) system.unknown_node_.push_back(full.unknown_node_[idx(k)]);
+    for (Vector* x : {&system.initial_z_, &system.initial_v_, &system.nominal_direction_})
+      *x = (*x)(kept).eval();
+    for (Vector* m : {&system.nominal_inertia_, &system.nominal_drag_}) {
+      Vector of_kept(count + known);
+      of_kept << (*m)(kept), m->tail(known);
+      *m = std::move(of_kept);
+    }
+    place_terms(system);
+    return system;
+  }
+
  private:
   int count() const { return static_cast<int>(basis_.cols()); }
+
+  /// Finds the places of terms and loads in a pattern and in unknowns that are new.
+  static void place_terms(System& system) {
+    system.find_slots();
+    system.table_loads_ = {};
+    system.knotted_loads_ = {};
+    system.moving_loads_.clear();
+    system.known_loads_.clear();
+    for (int i = 0; i < static_cast<int>(system.loads_.size()); ++i) system.map_load(i);
+  }
 
   void check_basis() const {
     std::vector<Finding> findings;
@@ -177,14 +233,9 @@ class RitzProjector {
     }
     std::fill_n(pattern->valuePtr(), pattern->nonZeros(), 0.0);
     system_.pattern_ = pattern;
-    system_.find_slots();
     system_.zu_ = {couplings(full_.zu_.mass, basis_), couplings(full_.zu_.damping, basis_),
                    couplings(full_.zu_.stiffness, basis_)};
-    system_.table_loads_ = {};
-    system_.knotted_loads_ = {};
-    system_.moving_loads_.clear();
-    system_.known_loads_.clear();
-    for (int i = 0; i < static_cast<int>(system_.loads_.size()); ++i) system_.map_load(i);
+    place_terms(system_);
     mass_ = matrices[0];
   }
 
@@ -218,6 +269,11 @@ class RitzProjector {
 
 System ritz_projection(const System& system, const Eigen::MatrixXd& basis) {
   return RitzProjector(system, basis).project();
+}
+
+System held_system(const System& system, const std::vector<bool>& held, const Vector& damping,
+                   const Vector& stiffness) {
+  return RitzProjector::hold(system, held, damping, stiffness);
 }
 
 }  // namespace drev

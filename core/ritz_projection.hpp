@@ -18,4 +18,10 @@ namespace drev {
 /// with one entry).
 System ritz_projection(const System& system, const Eigen::MatrixXd& basis);
 
+/// The system with those unknowns at rest that `held` marks, one flag each, and with values added to its damping and its stiffness
+/// [on System::pattern(); empty: none]. No law, load or frequency term acts on a held one; their nodes have the deviation 0. It has no
+/// frequency terms: what is added stands for them. Sparse systems stay so.
+System held_system(const System& system, const std::vector<bool>& held, const Vector& damping,
+                   const Vector& stiffness);
+
 }  // namespace drev

@@ -83,7 +83,7 @@ double least_steps(const System& system, const Method& method, double duration) 
     double rate = 0.0;
     if (method.exact() || step_scheme(method.name).is_explicit()) {
       rate = fastest_rate(system);
-    } else if (const ModeSet slowest = solve_modes(system); slowest.count() > 0) {
+    } else if (const ModeSet slowest = solve_modes(system, {.in_time = true}); slowest.count() > 0) {
       rate = slowest.omega(0);
     }
     return rate * duration / kRateTimesStep;

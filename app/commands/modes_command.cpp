@@ -33,7 +33,7 @@ ModesRequest request_modes(const CommandLine& line) {
   ModesOptions options;
   if (line.option("--contact") == "open") options.contact = Contact::open;
   std::optional<int> elastic;
-  if (model) elastic = model->system.size() - model->system.rigid_mode_count(options.contact);
+  if (model) elastic = elastic_mode_count(model->system, options.contact);
   if (const auto count = line.option("--count"); count && elastic == 0)
     findings.push_back({kCommandLine, "--count", *count, "",
                         "must be left out: the model has no elastic modes" +

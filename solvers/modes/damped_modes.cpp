@@ -14,6 +14,7 @@
 
 #include "core/dense/eigenvalues.hpp"
 #include "core/dense/factorization.hpp"
+#include "solvers/modes/own_frequency.hpp"
 #include "solvers/modes/tied_system.hpp"
 
 namespace drev {
@@ -21,6 +22,8 @@ namespace drev {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
+
+constexpr double kRealRounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 Matrix dense(const SparseMatrix& pattern, const Vector& values) {
   SparseMatrix a = pattern;
@@ -68,12 +71,43 @@ DampedMode to_mode(std::complex<double> lambda, double rounding) {
 
 }  // namespace
 
+void DampedModeSet::set_modes(const System& system, const Eigen::VectorXcd& lambda, const Vector& rounding) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(lambda.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index i, Eigen::Index j) { return std::abs(lambda[i]) < std::abs(lambda[j]); });
+  vectors = vectors(Eigen::all, order).eval();
+  modes.clear();
+  shapes.setZero(system.node_count(), lambda.size());
+  for (Eigen::Index j = 0; j < lambda.size(); ++j) {
+    const Eigen::Index from = order[static_cast<std::size_t>(j)];
+    modes.push_back(
+        to_mode(lambda[from], rounding.size() > 0 ? rounding[from] : kRealRounding * std::abs(lambda[from])));
+    auto shape = shapes.col(j);
+    for (int i = 0; i < system.node_count(); ++i)
+      for (const Entry& e : system.row_of(i)) shape[i] += e.coeff * vectors(e.index, j);
+    Eigen::Index largest = 0;
+    shape.cwiseAbs().maxCoeff(&largest);
+    const std::complex<double> scale = shape[largest];
+    shape /= scale;
+  }
+}
+
 DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions& options) {
   refuse_controllers(system, "the solution for damped modes");
   if (const auto tied = tied_system(system)) {
     if (options.damping.size() > 0) refuse_friction(system, "a damping by speed");
-    return solve_damped_modes(tied->system, options);
+    DampedModeSet set = solve_damped_modes(tied->system, options);
+    set.vectors = (tied->basis * set.vectors).eval();
+    return set;
   }
+  if (const Eigen::Index places = system.pattern().nonZeros();
+      options.damping.size() > 0 && options.damping.size() != places)
+    throw ModelError(
+        {{system.name() + "/damped modes", "damping", std::to_string(options.damping.size()), "values",
+          "must have " + std::to_string(places) + ", one for each place of the system's pattern, or none"}});
+  if (!options.in_time && !system.frequency_terms().empty() && system.symmetric_tangent())
+    return damped_modes_at_own_frequency(system, options);
   const int n = system.size();
   if (n > options.size_limit)
     throw ModelError({{system.name() + "/damped modes", "unknowns", std::to_string(n), "",
@@ -81,11 +115,6 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
                            ": the eigenproblem is dense"}});
   const Assembler assembler(system);
   Vector values;
-  if (const Eigen::Index places = system.pattern().nonZeros();
-      options.damping.size() > 0 && options.damping.size() != places)
-    throw ModelError(
-        {{system.name() + "/damped modes", "damping", std::to_string(options.damping.size()), "values",
-          "must have " + std::to_string(places) + ", one for each place of the system's pattern, or none"}});
   const CholeskyFactor mass(dense(system.pattern(), system.mass_values()));
   if (!mass.positive_definite())
     throw SolverError("damped modes of " + system.name() + ": mass matrix not positive definite");
@@ -110,7 +139,7 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
     k = (v.transpose() * k * v).eval();
   } else {
     // Soft parts beside very stiff ones: the undamped modes, which are found to their own accuracy.
-    const ModeSet undamped = solve_modes(system, {.count = e, .contact = options.contact});
+    const ModeSet undamped = solve_modes(system, {.count = e, .contact = options.contact, .in_time = true});
     Matrix x(n, n);
     x << undamped.rigid_vectors, undamped.vectors;
     v = mass.lower().transpose() * x;
@@ -129,7 +158,6 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
   if (!eigen.converged)
     throw SolverError("damped modes of " + system.name() + ": the eigensolver did not converge");
 
-  constexpr double kRealRounding = 4.0 * std::numeric_limits<double>::epsilon();
   std::vector<int> oscillating;
   for (int j = 0; j < e + n; ++j) {
     const std::complex<double> lambda = eigen.values[j];
@@ -141,27 +169,22 @@ DampedModeSet solve_damped_modes(const System& system, const DampedModesOptions&
       oscillating.push_back(j);
   }
   std::sort(set.real_lambda.rbegin(), set.real_lambda.rend());
-  std::sort(oscillating.begin(), oscillating.end(),
-            [&](int i, int j) { return std::abs(eigen.values[i]) < std::abs(eigen.values[j]); });
   // Nothing damps or feeds energy in: no mode decays or grows.
   const bool conservative = system.symmetric_tangent() && c.isZero(0.0);
   const Matrix to_unknowns = mass.solve_lower_transposed(v);
-  set.shapes.setZero(system.node_count(), static_cast<Eigen::Index>(oscillating.size()));
-  for (std::size_t j = 0; j < oscillating.size(); ++j) {
-    const std::complex<double> lambda = eigen.values[oscillating[j]];
-    const double size = one_scale ? scale[0] : std::abs(lambda);
-    set.modes.push_back(to_mode(lambda, conservative ? std::abs(lambda) : kRealRounding * size));
+  const auto count = static_cast<Eigen::Index>(oscillating.size());
+  Eigen::VectorXcd lambdas(count);
+  Vector rounding(count);
+  set.vectors.resize(n, count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const int at = oscillating[static_cast<std::size_t>(j)];
+    lambdas[j] = eigen.values[at];
+    const double size = one_scale ? scale[0] : std::abs(lambdas[j]);
+    rounding[j] = conservative ? std::abs(lambdas[j]) : kRealRounding * size;
     // Rates are lambda times the shape: the common factor is scaled away.
-    const Eigen::VectorXcd z = to_unknowns * eigen.vectors.col(oscillating[j]).tail(n);
-    auto shape = set.shapes.col(static_cast<Eigen::Index>(j));
-    for (int i = 0; i < system.node_count(); ++i) {
-      for (const Entry& e : system.row_of(i)) shape[i] += e.coeff * z[e.index];
-    }
-    Eigen::Index largest = 0;
-    shape.cwiseAbs().maxCoeff(&largest);
-    const std::complex<double> scale = shape[largest];
-    shape /= scale;
+    set.vectors.col(j) = to_unknowns * eigen.vectors.col(at).tail(n);
   }
+  set.set_modes(system, lambdas, rounding);
   return set;
 }
 

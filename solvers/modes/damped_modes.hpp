@@ -20,6 +20,10 @@
 /// Real parts within 4 eps w_0 are 0, and all are where nothing damps and the tangents are symmetric. A real lambda
 /// of several motions at once stays real, though rounding splits it into a pair.
 ///
+/// Elements with a complex stiffness k*(f) have it at the frequency Im lambda / (2 pi) of each mode, under the load that they carry in time
+/// (ViscoelasticStiffness), and internal nodes of their chains are at rest; real lambda have Re k*(0). Only where the tangents are
+/// symmetric: otherwise they are as in time.
+///
 /// Source: F. Tisseur, K. Meerbergen, The quadratic eigenvalue problem, SIAM Review 43(2), 2001,
 /// doi:10.1137/S0036144500381988.
 #include <drev/core/system.hpp>
@@ -37,6 +41,9 @@ struct DampedModesOptions {
   /// Added to C, values on System::pattern(); empty: nothing. That of loads which follow the speed:
   /// load_damping() of solvers/periodic/linear_sweep.hpp.
   Vector damping = {};
+  /// With the matrices that methods in time have: elements with a complex stiffness as the chain that stands for them there, which
+  /// has real lambda of its own.
+  bool in_time = false;
 };
 
 /// One oscillating mode: a pair of conjugate lambda.
@@ -56,6 +63,11 @@ struct DampedModeSet {
   std::vector<double> real_lambda;
   /// Column j: modes[j] over all nodes; the entry of largest magnitude is 1.
   Eigen::MatrixXcd shapes;
+  Eigen::MatrixXcd vectors;  ///< the same over the unknowns, each column in a scale of its own
+  bool in_time = true;       ///< of matrices as methods in time have them (DampedModesOptions)
+
+  /// Gives the modes other lambda [1/s], Im >= 0, and the shapes of `vectors`. Real parts within `rounding` [1/s], one for each mode, are 0.
+  void set_modes(const System& system, const Eigen::VectorXcd& lambda, const Vector& rounding = {});
 };
 
 /// Throws ModelError above size_limit, SolverError where solve_modes() refuses so wide a spread, or the

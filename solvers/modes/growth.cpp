@@ -75,7 +75,7 @@ Growth fastest_growth(const System& system, const DampedModeSet& modes) {
 
 Growth find_growth(const System& system, const Vector& damping) {
   if (system.size() > kMostUnknownsToGrow || is_passive(system, damping)) return {};
-  return fastest_growth(system, solve_damped_modes(system, {.damping = damping}));
+  return fastest_growth(system, solve_damped_modes(system, {.damping = damping, .in_time = true}));
 }
 
 }  // namespace drev

@@ -3,6 +3,7 @@
 #include <drev/solvers/modes/damped_modes.hpp>
 
 #include "core/element_parts.hpp"
+#include "solvers/linear/complex_stiffnesses.hpp"
 
 namespace drev {
 
@@ -20,6 +21,22 @@ void normalise(Shares& shares) {
     const double sum = shares.col(j).sum();
     if (sum > 0.0) shares.col(j) /= sum;
   }
+}
+
+/// What k* of elements is beyond their matrices, at the frequency of each mode.
+void add_complex_stiffnesses(const System& system, const DampedModeSet& modes, ModeEnergy& energy) {
+  const std::vector<FrequencyTerm>& terms = system.frequency_terms();
+  const ComplexStiffnesses stiffnesses(system, std::vector<bool>(idx(system.size()), false));
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    for (Eigen::Index j = 0; j < modes.shapes.cols(); ++j) {
+      std::complex<double> deflection = 0.0;
+      for (const Entry& e : terms[t].nodes) deflection += e.coeff * modes.shapes(e.index, j);
+      const double omega = modes.modes[static_cast<std::size_t>(j)].lambda.imag(),
+                   square = std::norm(deflection);
+      const std::complex<double> k = stiffnesses.beyond(t, omega, terms[t].stiffness->load_in_matrices());
+      energy.elastic(index(terms[t].element), j) += k.real() * square;
+      energy.dissipated(index(terms[t].element), j) += k.imag() / omega * square;
+    }
 }
 
 }  // namespace
@@ -56,6 +73,7 @@ ModeEnergy mode_energy(const System& system, const DampedModeSet& modes) {
       }
     });
   }
+  if (!modes.in_time) add_complex_stiffnesses(system, modes, energy);
   for (std::size_t e = 0; e < instances.size(); ++e)
     energy.dissipated.row(static_cast<Eigen::Index>(e)) +=
         rayleigh[e].first * mass + rayleigh[e].second * stiffness;

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <optional>
 
+#include "solvers/linear/complex_stiffnesses.hpp"
 #include "solvers/linear/huge_pages.hpp"
 #include "solvers/modes/modal_problem.hpp"
+#include "solvers/modes/own_frequency.hpp"
 #include "solvers/modes/tied_system.hpp"
 
 namespace drev {
@@ -153,6 +155,7 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
     if (modes.rigid_vectors.size() > 0) modes.rigid_vectors = tied->basis * modes.rigid_vectors;
     return modes;
   }
+  if (!options.in_time && !system.frequency_terms().empty()) return modes_at_own_frequency(system, options);
   const int n = system.size();
   ModeSet modes;
   modes.contact = options.contact;
@@ -205,6 +208,13 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
   }
   throw SolverError("modes of " + system.name() + ": modes found and Sturm count did not agree after " +
                     std::to_string(kRounds) + " rounds");
+}
+
+int elastic_mode_count(const System& system, Contact contact) {
+  if (const auto tied = tied_system(system)) return elastic_mode_count(tied->system, contact);
+  const ComplexStiffnesses stiffnesses(system, std::vector<bool>(idx(system.size()), false));
+  const auto held = std::count(stiffnesses.held().begin(), stiffnesses.held().end(), true);
+  return system.size() - static_cast<int>(held) - system.rigid_mode_count(contact);
 }
 
 }  // namespace drev

@@ -4,7 +4,8 @@
 ///   K x = omega^2 M x,  x' M x = 1,  f = omega / (2 pi)
 ///
 /// K: stiffness with every contact closed at its mean stiffness, or open. Damping is left out (see
-/// damped_modes.hpp).
+/// damped_modes.hpp). Elements with a complex stiffness k*(f) have Re k* at the mode's frequency, under the load that they carry in
+/// time (ViscoelasticStiffness); internal nodes of their chains are at rest.
 ///
 /// Rigid-body modes (omega = 0) are expected from the model's graph: parts tied neither to ground
 /// nor to a prescribed node. As many eigenvectors must store no energy within rounding, |x' K x| <= 1e-13 |x|' |K| |x|
@@ -34,6 +35,9 @@ struct ModesOptions {
   /// fewer. Not given: 10, or all where there are fewer (none is no error).
   std::optional<int> count = {};
   Contact contact = Contact::closed;
+  /// With the matrices that methods in time have: elements with a complex stiffness as the chain that stands for them there, whose
+  /// internal nodes have modes of their own.
+  bool in_time = false;
   /// Systems of up to as many unknowns are solved dense, and where Lanczos would need a basis of nearly all.
   /// Measured for 10 modes of a held chain, time dense : Lanczos = 1.06 at 24 unknowns, 1.4 at 38, 3.4 at 80,
   /// 5.7 at 100, 28 at 200 (6.5 ms : 0.23 ms).
@@ -75,5 +79,8 @@ struct ModeSet {
 /// the graph says, if K has a negative eigenvalue (static instability) or is unsymmetric, if no
 /// agreement with the Sturm count is reached, or if rounding leaves an error of more than a tenth of a frequency.
 ModeSet solve_modes(const System& system, const ModesOptions& options = {});
+
+/// How many elastic modes solve_modes() can find: fewer than unknowns where internal nodes are at rest or lossy gears are ideal ones.
+int elastic_mode_count(const System& system, Contact contact);
 
 }  // namespace drev

@@ -25,7 +25,7 @@ Settling settling_time(const System& system) {
   }
   DampedModeSet modes;
   try {
-    modes = solve_damped_modes(system, {});
+    modes = solve_damped_modes(system, {.in_time = true});
   } catch (const SolverError& error) {
     return {kNever, std::string("its damped modes are not found: ") + error.what()};
   }

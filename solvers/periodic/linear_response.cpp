@@ -21,8 +21,7 @@ namespace {
 using Complex = std::complex<double>;
 using Section = LinearResponse::Section;
 
-constexpr double kNoDrag = 1e-13;    // drag relative to speed times largest damping that is rounding [-]
-constexpr double kSameChain = 1e-9;  // relative rounding of the stiffness of an element's Maxwell chain [-]
+constexpr double kNoDrag = 1e-13;  // drag relative to speed times largest damping that is rounding [-]
 
 template <class Values>
 auto product(const std::vector<Entry>& row, const Values& z) {
@@ -54,23 +53,28 @@ LinearResponse::LinearResponse(const System& system, const LinearSweepOptions& o
   assembler_.contact_values({0.0, 0.0, 1.0}, Contact::closed, stiffness_);
   sections_ = find_section_rows(system, options.sections, findings);
   direction_ = reference_direction(system_);
-  const std::vector<bool> held = find_held();
-  Vector static_stiffness = stiffness_;
-  for (std::size_t i = 0; i < slots_.size(); ++i)
-    static_stiffness[slots_[i]] +=
-        slot_times_[i] * system.frequency_terms()[idx(slot_terms_[i])].stiffness->static_beyond_matrices();
+  complex_.emplace(system, looked_at());
+  const std::vector<bool>& held = complex_->held();
+  Vector static_stiffness = stiffness_, no_loss = damping_;
+  complex_->add(
+      1.0,
+      [&](std::size_t t) -> Complex {
+        return system.frequency_terms()[t].stiffness->static_beyond_matrices();
+      },
+      no_loss, static_stiffness);
   if (findings.empty()) mean_.emplace(system_, damping_, static_stiffness, options.balance, findings);
   elimination_.emplace(system.pattern(), held);
   lanes_.emplace(*elimination_);
   rows_.emplace(system_, load_rows_, sections_, held);
   z_.resize(idx(system.size()));
-  carried_.resize(system.frequency_terms().size());
+  carried_.resize(complex_->count());
+  for (LaneArray* rows : {&beyond_re_, &beyond_im_}) rows->resize(complex_->count() * kLaneSets);
   for (const FrequencyTerm& term : system.frequency_terms()) {
     follows_mean_ |= term.stiffness->follows_mean_torque();
     follows_amplitude_ |= !term.stiffness->amplitudes().empty();
   }
-  all_constant_ = !follows_mean_ && !follows_amplitude_ &&
-                  std::find(term_constant_.begin(), term_constant_.end(), false) == term_constant_.end();
+  all_constant_ = !follows_mean_ && !follows_amplitude_;
+  for (std::size_t t = 0; t < complex_->count(); ++t) all_constant_ &= complex_->constant(t);
   for (LaneArray* rows : {&re_, &im_, &p_re_, &p_im_}) rows->resize(idx(system.size()) * kLaneSets);
   given_.resize(load_rows_.size() * LaneSections::kFrequencies);
 }
@@ -113,12 +117,8 @@ void LinearResponse::check_model(bool close_contacts, std::vector<Finding>& find
 void LinearResponse::add_frequency_terms(double omega) {
   damping_at_omega_ = damping_here_;
   stiffness_at_omega_ = stiffness_here_;
-  Complex k = 0.0;
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (i == 0 || slot_terms_[i] != slot_terms_[i - 1]) k = beyond(idx(slot_terms_[i]), omega);
-    stiffness_at_omega_[slots_[i]] += k.real() * slot_times_[i];
-    damping_at_omega_[slots_[i]] += k.imag() / omega * slot_times_[i];
-  }
+  complex_->add(
+      omega, [&](std::size_t t) { return beyond(t, omega); }, damping_at_omega_, stiffness_at_omega_);
 }
 
 void LinearResponse::spread_frequency_terms(int sets) {
@@ -136,94 +136,33 @@ void LinearResponse::spread_frequency_terms(int sets) {
   if (!all_constant_) {
     for (LaneArray* values : {&stiffness_lanes_, &loss_lanes_})
       values->resize(static_cast<std::size_t>(stiffness_here_.size()) * kLaneSets);
-    spread_at_slots(sets, slots_, slot_terms_, slot_times_, beyond_re_, beyond_im_, stiffness_here_,
-                    stiffness_lanes_, loss_lanes_);
+    spread_at_slots(sets, complex_->slots(), complex_->slot_terms(), complex_->slot_times(), beyond_re_,
+                    beyond_im_, stiffness_here_, stiffness_lanes_, loss_lanes_);
     return;
   }
   stiffness_common_ = stiffness_here_;
   loss_common_.setZero(stiffness_here_.size());
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    const auto row = idx(slot_terms_[i]) * kLaneSets;
-    stiffness_common_[slots_[i]] += slot_times_[i] * beyond_re_[row].v[0];
-    loss_common_[slots_[i]] += slot_times_[i] * beyond_im_[row].v[0];
-  }
+  complex_->add(
+      1.0,
+      [&](std::size_t t) -> Complex {
+        return {beyond_re_[t * kLaneSets].v[0], beyond_im_[t * kLaneSets].v[0]};
+      },
+      loss_common_, stiffness_common_);
   spread_ = true;
 }
 
 Complex LinearResponse::beyond(std::size_t term, double omega) const {
-  const FrequencyStiffness& stiffness = *system_.frequency_terms()[term].stiffness;
-  return term_held_[term] ? *stiffness.beyond_held(omega, carried_[term])
-                          : stiffness.beyond_matrices(omega, carried_[term]);
+  return complex_->beyond(term, omega, carried_[term]);
 }
 
-std::vector<bool> LinearResponse::find_held() {
-  const SparseMatrix& pattern = system_.pattern();
-  const auto terms = system_.frequency_terms();
-  std::vector<bool> held(idx(system_.size()), false), used(idx(system_.size()), false);
-  term_held_.assign(terms.size(), false);
-  term_constant_.assign(terms.size(), false);
-  for (std::size_t t = 0; t < terms.size(); ++t)
-    for (const Entry& c : terms[t].z)
-      for (const Entry& r : terms[t].z) {
-        const int* first = pattern.innerIndexPtr() + pattern.outerIndexPtr()[c.index];
-        const int* last = pattern.innerIndexPtr() + pattern.outerIndexPtr()[c.index + 1];
-        slots_.push_back(static_cast<int>(std::lower_bound(first, last, r.index) - pattern.innerIndexPtr()));
-        slot_terms_.push_back(static_cast<int>(t));
-        slot_times_.push_back(r.coeff * c.coeff);
-      }
-  for (LaneArray* rows : {&beyond_re_, &beyond_im_}) rows->resize(terms.size() * kLaneSets);
+std::vector<bool> LinearResponse::looked_at() const {
+  std::vector<bool> used(idx(system_.size()), false);
   const auto use = [&](const std::vector<Entry>& row) {
     for (const Entry& e : row) used[idx(e.index)] = true;
   };
-  for (const std::vector<Entry>& row : load_rows_) use(row);
-  for (const ScalarTerm& term : system_.scalars()) use(term.z);
   for (const Section& s : sections_)
     if (s.frequency_term < 0) use(s.stiffness), use(s.damping), use(s.twist);
-  for (std::size_t t = 0; t < terms.size(); ++t) {
-    const FrequencyTerm& term = terms[t];
-    const auto same = [&](const FrequencyTerm& other) { return other.element == term.element; };
-    if (std::count_if(terms.begin(), terms.end(), same) > 1 || !term.stiffness->beyond_held(1.0, {}))
-      continue;
-    const NodeRange internal = system_.element_instances()[idx(index(term.element))].internal;
-    std::vector<int> inner;
-    for (const NodeId id : internal) {
-      const std::vector<Entry> row = system_.row_of(index(id));
-      if (row.size() == 1 && row[0].coeff == 1.0 && !used[idx(row[0].index)]) inner.push_back(row[0].index);
-    }
-    if (static_cast<int>(inner.size()) != internal.count) continue;
-    // No other element may act on them: condensed, they must give the stiffness that the element states.
-    bool alone = true;
-    for (const double omega : {10.0, 1000.0}) {
-      Complex given = 0.0;
-      for (const int unknown : inner) {
-        Complex own = 0.0, coupling = 0.0;
-        std::size_t others = 0;
-        for (int slot = pattern.outerIndexPtr()[unknown]; slot < pattern.outerIndexPtr()[unknown + 1];
-             ++slot) {
-          const int row = pattern.innerIndexPtr()[slot];
-          const Complex s(stiffness_[slot] - omega * omega * mass_[slot], omega * damping_[slot]);
-          if (row == unknown) own = s;
-          if (row == unknown || s == 0.0) continue;
-          const auto at =
-              std::find_if(term.z.begin(), term.z.end(), [&](const Entry& e) { return e.index == row; });
-          if (at != term.z.end()) coupling = s / at->coeff;
-          alone = alone && at != term.z.end();
-          ++others;
-        }
-        alone = alone && others == term.z.size() && own != 0.0;
-        given -= coupling * coupling / own;
-      }
-      const Complex without = *term.stiffness->beyond_held(omega, {}),
-                    with = term.stiffness->beyond_matrices(omega, {});
-      alone =
-          alone && std::abs(given - (without - with)) <= kSameChain * (std::abs(with) + std::abs(without));
-    }
-    if (!alone) continue;
-    term_held_[t] = true;
-    term_constant_[t] = !term.stiffness->follows_frequency();
-    for (const int unknown : inner) held[idx(unknown)] = true;
-  }
-  return held;
+  return used;
 }
 
 const Vector& LinearResponse::damping_at(double speed) {
@@ -354,21 +293,22 @@ Complex LinearResponse::mode_stiffness(std::size_t term, double speed, double om
     find_mean_torques(speed);
     load.mean_torque = carried_[term].mean_torque;
   }
-  return stiffness.beyond_matrices(omega, load);
+  return complex_->beyond(term, omega, load);
 }
 
 ModeMatrices LinearResponse::mode_matrices(double speed, double omega, double part) {
   const Vector& damping = damping_at(speed);
-  if (slots_.empty()) return {damping, stiffness_};
+  if (complex_->count() == 0) return {damping, stiffness_};
   mode_damping_ = damping;
   mode_stiffness_ = stiffness_;
-  Complex k = 0.0;
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    if (i == 0 || slot_terms_[i] != slot_terms_[i - 1])
-      k = part * mode_stiffness(idx(slot_terms_[i]), speed, omega);
-    mode_stiffness_[slots_[i]] += k.real() * slot_times_[i];
-    mode_damping_[slots_[i]] += k.imag() / omega * slot_times_[i];
-  }
+  complex_->add(
+      omega,
+      [&](std::size_t t) {
+        const Complex given =
+            complex_->beyond(t, omega, system_.frequency_terms()[t].stiffness->load_in_matrices());
+        return given + part * (mode_stiffness(t, speed, omega) - given);
+      },
+      mode_damping_, mode_stiffness_);
   return {mode_damping_, mode_stiffness_};
 }
 

@@ -7,8 +7,9 @@
 
 #include <array>
 
+#include "solvers/linear/complex_stiffnesses.hpp"
 #include "solvers/linear/lane_elimination.hpp"
-#include "solvers/periodic/damped_pairs.hpp"
+#include "solvers/modes/damped_pairs.hpp"
 #include "solvers/periodic/lane_sections.hpp"
 #include "solvers/periodic/mean_equilibrium.hpp"
 #include "solvers/periodic/order_content.hpp"
@@ -62,10 +63,12 @@ class LinearResponse {
   /// Damping values on the pattern, with the loads' mean slopes at the speed.
   const Vector& damping_at(double speed);
   bool follows_mean_torque() const { return follows_mean_; }
-  /// A complex stiffness of a mode of frequency omega > 0 [rad/s] at the speed beyond that of its own matrices: under the mean
-  /// torque there, and the amplitude of these matrices.
+  const ComplexStiffnesses& complex_stiffnesses() const { return *complex_; }
+  /// ComplexStiffnesses::beyond() for a mode of frequency omega > 0 [rad/s] at the speed: under the mean torque there, and the
+  /// amplitude of the element's own matrices.
   std::complex<double> mode_stiffness(std::size_t term, double speed, double omega);
-  /// The matrices of a mode of frequency omega > 0 [rad/s] at the speed, with the loads' damping there. part: of what mode_stiffness() adds, 0 to 1.
+  /// The matrices of a mode of frequency omega > 0 [rad/s] at the speed, with the loads' damping there. part: 0 to 1, of the way from
+  /// the mean torque in time to that at the speed.
   ModeMatrices mode_matrices(double speed, double omega, double part = 1.0);
 
  private:
@@ -96,11 +99,10 @@ class LinearResponse {
   double motion() const;
   /// Adds the complex stiffnesses at the frequencies w_ to the stiffness and to the imaginary part of the sets.
   void spread_frequency_terms(int sets);
-  /// Complex stiffness of a frequency term beyond that of the matrices, with the held internal nodes at rest.
+  /// Of a frequency term, under the load that it carries.
   std::complex<double> beyond(std::size_t term, double omega) const;
-  /// Finds the internal nodes to hold at 0: those of elements that know their complex stiffness without them,
-  /// if no other element acts on these nodes.
-  std::vector<bool> find_held();
+  /// The unknowns, one flag each, that a section looks at other than by its complex stiffness.
+  std::vector<bool> looked_at() const;
   /// Solves for the amplitudes at up to LaneSections::kFrequencies of the orders numbered in active_, from place
   /// `first` on.
   void solve_orders(double speed, std::size_t first, Point& point);
@@ -128,12 +130,8 @@ class LinearResponse {
   bool plain_ = false;                        // nothing was added to the values of the last speed
   // Values with complex stiffnesses; unused without them.
   Vector damping_at_omega_, stiffness_at_omega_, mode_damping_, mode_stiffness_;
-  /// Slots of the pattern to which frequency terms contribute; for each its term and its factor.
-  std::vector<int> slots_, slot_terms_;
-  std::vector<double> slot_times_;
-  std::vector<bool> term_held_;      // for each frequency term: the internal nodes of its element are held
-  std::vector<bool> term_constant_;  // for each: its stiffness beyond the matrices is constant over frequency
-  bool all_constant_ = false;        // true: that is so for every term, whatever loads they carry
+  std::optional<ComplexStiffnesses> complex_;
+  bool all_constant_ = false;  // true: every term is constant over frequency, whatever load it carries
   std::optional<ComplexElimination> elimination_;
   std::optional<LaneElimination> lanes_;
   // True: some complex stiffness depends on the mean torque, or on the amplitude.

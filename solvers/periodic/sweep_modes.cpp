@@ -9,7 +9,7 @@
 #include <map>
 #include <numeric>
 
-#include "solvers/periodic/damped_pairs.hpp"
+#include "solvers/periodic/damped_poles.hpp"
 #include "solvers/periodic/linear_response.hpp"
 #include "solvers/periodic/sweep_peaks.hpp"
 
@@ -20,7 +20,6 @@ namespace {
 constexpr int kMostUnknowns = 400;   // unknowns up to which damped modes are dense; beyond, one by one
 constexpr int kFirstModes = 16;      // number of undamped modes that are found first
 constexpr int kMostModes = 128;      // largest number of undamped modes that are found
-constexpr int kFewSteps = 8;         // from the matrices' stiffnesses to k* of a mode
 constexpr double kSameMode = 1e-9;   // relative difference of lambda of one and the same mode [-]
 constexpr int kModeSpeeds = 9;       // number of speeds for modes if loads depend on the speed
 constexpr int kMostModeSpeeds = 33;  // largest number with those at which their damping bends
@@ -57,66 +56,9 @@ std::vector<Eigen::Index> matched(const Eigen::MatrixXcd& last, const std::vecto
   return from;
 }
 
-/// Takes a mode of the model's own matrices, of complex stiffnesses those in time, on to that with k* at its frequency and the
-/// mean torques of the speed, in steps. False: lost on the way, and both are as given.
-bool take_on(const System& system, LinearResponse& response, DampedPairs& pairs, double speed, int steps,
-             std::complex<double>& lambda, Eigen::VectorXcd& shape) {
-  if (system.frequency_terms().empty()) steps = 1;
-  std::complex<double> found = lambda;
-  Eigen::VectorXcd its = shape;
-  for (int step = 1; step <= steps; ++step) {
-    const double part = static_cast<double>(step) / steps;
-    const auto matrices = [&](double omega) { return response.mode_matrices(speed, omega, part); };
-    if (!pairs.refine(matrices, found, its)) return false;
-  }
-  lambda = found, shape = its;
-  return true;
-}
-
-/// Shapes over all nodes as shapes over the unknowns.
-Eigen::MatrixXcd shapes_of_unknowns(const System& system, const Eigen::MatrixXcd& shapes) {
-  Eigen::MatrixXcd found = Eigen::MatrixXcd::Zero(system.size(), shapes.cols());
-  for (int node = 0; node < system.node_count(); ++node)
-    if (const NodeMap& map = system.node_map(node); map.unknown >= 0)
-      found.row(map.unknown) = shapes.row(node) / map.coeff;
-  return found;
-}
-
-/// Takes all modes on so, those up to `highest` [rad/s] in steps small enough that no two of them become the same one. Modes above it
-/// that are lost on the way stay as they are. False: some below it, which are 0 then.
-bool take_all_on(const System& system, LinearResponse& response, DampedPairs& pairs, double speed,
-                 double highest, const std::function<void()>& pause, DampedModeSet& set) {
-  constexpr double kLike = 0.999;  // likeness of two shapes that are one [-]
-  const Eigen::MatrixXcd given = shapes_of_unknowns(system, set.shapes);
-  Eigen::VectorXcd lambda(given.cols());
-  Eigen::MatrixXcd shapes;
-  std::vector<Eigen::Index> lost;
-  for (const int steps : {kFewSteps, 8 * kFewSteps, 64 * kFewSteps}) {
-    lost.clear();
-    shapes = given;
-    for (Eigen::Index m = 0; m < given.cols(); ++m) {
-      pause();
-      lambda[m] = set.modes[static_cast<std::size_t>(m)].lambda;
-      const bool matters = std::abs(lambda[m]) <= highest;
-      Eigen::VectorXcd shape = given.col(m);
-      bool good = take_on(system, response, pairs, speed, matters ? steps : kFewSteps, lambda[m], shape);
-      for (Eigen::Index j = 0; j < m && good && matters; ++j)
-        good = std::abs(lambda[j] - lambda[m]) > kSameMode * std::abs(lambda[m]) ||
-               std::abs(shape.dot(shapes.col(j))) < kLike * shape.norm() * shapes.col(j).norm();
-      if (good || !matters) shapes.col(m) = shape;
-      if (!good && matters) lost.push_back(m);
-    }
-    if (lost.empty()) break;
-  }
-  for (const Eigen::Index m : lost) lambda[m] = 0.0;
-  for (Eigen::Index m = 0; m < given.cols(); ++m) {
-    set.modes[static_cast<std::size_t>(m)].lambda = lambda[m];
-    for (int node = 0; node < system.node_count(); ++node) {
-      set.shapes(node, m) = 0.0;
-      for (const Entry& e : system.row_of(node)) set.shapes(node, m) += e.coeff * shapes(e.index, m);
-    }
-  }
-  return lost.empty();
+/// The way of modes from the mean torque that complex stiffnesses carry in time to that at the speed.
+DampedPairs::Path path_at(LinearResponse& response, double speed) {
+  return [&response, speed](double part, double omega) { return response.mode_matrices(speed, omega, part); };
 }
 
 /// Speeds between given ones at which a load that states how steep it may be over a range is steeper than at these: a gate may open
@@ -249,7 +191,7 @@ class ModeSpeeds {
 
   Eigen::Index loads() const { return static_cast<Eigen::Index>(content_.loads().size()); }
 
-  /// Of loads their damping; of complex stiffnesses what they are beyond their matrices, relative to these; of loads their size.
+  /// Of loads their damping; of complex stiffnesses what they are beyond the matrices, relative to the stated one; of loads their size.
   Vector values_at(double speed) {
     const std::size_t stiffnesses = system_.frequency_terms().size();
     Vector values(2 * loads() + static_cast<Eigen::Index>(stiffnesses));
@@ -259,9 +201,13 @@ class ModeSpeeds {
       values[values.size() - loads() + load++] = here.rms;
     }
     for (std::size_t t = 0; t < stiffnesses; ++t)
-      values[load++] = response_.mode_stiffness(t, speed, high_).real() /
-                       system_.frequency_terms()[t].stiffness->static_stiffness();
+      values[load++] = response_.mode_stiffness(t, speed, high_).real() / stated_stiffness(t);
     return values;
+  }
+  /// At rest, under the load in time.
+  double stated_stiffness(std::size_t term) const {
+    const FrequencyStiffness& own = *system_.frequency_terms()[term].stiffness;
+    return own.static_stiffness() + own.static_beyond_matrices();
   }
   /// At all speeds; of loads damping and size relative to the largest.
   void find_values() {
@@ -361,18 +307,23 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
   const ModeSpeeds mode_speeds(system, response, speeds);
   modes.speeds = mode_speeds.find();
   poles.jumps = mode_speeds.jumps();
-  Eigen::MatrixXcd shapes(system.node_count(), 0);  // of each mode, where it swung last
-  std::vector<char> swings;                         // for each: it does at the last speed
+  Eigen::MatrixXcd shapes(system.size(), 0);  // of each mode, where it swung last
+  std::vector<char> swings;                   // for each: it does at the last speed
   for (Eigen::Index i = 0; i < modes.speeds.size(); ++i) {
     pause();
     DampedModeSet set = solve_damped_modes(system, {.damping = load_damping(system, modes.speeds[i])});
-    if (!system.frequency_terms().empty() &&
-        !take_all_on(system, response, poles.pairs, modes.speeds[i], highest, pause, set))
-      sweep.modes_note =
-          "some modes were lost under the stiffness that couplings have at a speed: a resonance that is "
-          "narrower than the distance of the speeds can be missed";
+    Eigen::VectorXcd found(set.vectors.cols());
+    for (Eigen::Index m = 0; m < found.size(); ++m) found[m] = set.modes[static_cast<std::size_t>(m)].lambda;
+    if (response.follows_mean_torque()) {
+      if (!poles.pairs.take_all_on(path_at(response, modes.speeds[i]), highest, pause, found, set.vectors))
+        sweep.modes_note =
+            "some modes were lost under the stiffness that couplings have at a speed: a resonance that is "
+            "narrower than the distance of the speeds can be missed";
+      for (Eigen::Index m = 0; m < found.size(); ++m)
+        set.modes[static_cast<std::size_t>(m)].lambda = found[m];
+    }
     note_growth(modes, i, fastest_growth(system, set), sweep);
-    std::vector<Eigen::Index> from = matched(shapes, swings, set.shapes);
+    std::vector<Eigen::Index> from = matched(shapes, swings, set.vectors);
     const Eigen::Index more = std::count(from.begin(), from.end(), -1);
     shapes.conservativeResize(Eigen::NoChange, shapes.cols() + more);
     swings.assign(static_cast<std::size_t>(shapes.cols()), 0);
@@ -380,11 +331,11 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
     Eigen::VectorXcd& lambda = poles.lambda.emplace_back(Eigen::VectorXcd::Zero(shapes.cols()));
     for (std::size_t m = 0; m < from.size(); ++m) {
       const Eigen::Index mode = from[m] >= 0 ? from[m] : next++;
-      lambda[mode] = set.modes[m].lambda;
-      shapes.col(mode) = set.shapes.col(static_cast<Eigen::Index>(m));
+      lambda[mode] = found[static_cast<Eigen::Index>(m)];
+      shapes.col(mode) = set.vectors.col(static_cast<Eigen::Index>(m));
       swings[static_cast<std::size_t>(mode)] = lambda[mode] != 0.0;
     }
-    poles.shapes.push_back(shapes_of_unknowns(system, shapes));
+    poles.shapes.push_back(shapes);
   }
   number_modes(modes, poles);
   return modes;
@@ -396,7 +347,7 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
 SweepModes follow_pairs(const System& system, LinearResponse& response, const std::vector<double>& speeds,
                         double highest, const std::function<void()>& pause, LinearSweep& sweep,
                         DampedPoles& poles) {
-  const int all = system.elastic_mode_count();
+  const int all = elastic_mode_count(system, Contact::closed);
   ModeSet undamped;
   for (int count = std::min(all, kFirstModes);; count = std::min({all, 2 * count, kMostModes})) {
     undamped = solve_modes(system, {.count = count});
@@ -414,6 +365,7 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
     shapes.emplace_back(undamped.vectors.col(m).cast<std::complex<double>>());
     last.emplace_back(0.0, undamped.omega(m));
   }
+  const int steps = response.follows_mean_torque() ? DampedPairs::kFewSteps : 1;
   for (Eigen::Index i = 0; i < modes.speeds.size(); ++i) {
     Eigen::VectorXcd& found = poles.lambda.emplace_back(Eigen::VectorXcd::Zero(undamped.count()));
     Eigen::MatrixXcd& of_unknowns = poles.shapes.emplace_back(system.size(), undamped.count());
@@ -422,11 +374,12 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
       pause();
       std::complex<double> lambda = last[m];
       Eigen::VectorXcd shape = shapes[m];
-      const bool settled = take_on(system, response, pairs, modes.speeds[i], kFewSteps, lambda, shape);
+      const bool settled = pairs.take_on(path_at(response, modes.speeds[i]), steps, lambda, shape);
       of_unknowns.col(mode) = shape;
-      // What it does not swing as is no guess for the next speed.
+      // What it does not swing as is no guess for the next speed; nor is where a way has ended that begins at the mean torque in time.
       if (!settled) continue;
-      found[mode] = last[m] = lambda, shapes[m] = shape;
+      found[mode] = lambda;
+      if (steps == 1) last[m] = lambda, shapes[m] = shape;
       const bool known =
           ((modes.lambda.col(i).head(mode).array() - lambda).abs() < kSameMode * std::abs(lambda)).any();
       if (!known) modes.lambda(mode, i) = lambda;

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "solvers/periodic/bracketed_search.hpp"
-#include "solvers/periodic/damped_pairs.hpp"
+#include "solvers/periodic/damped_poles.hpp"
 #include "solvers/periodic/linear_response.hpp"
 #include "solvers/periodic/trigonometric_sum.hpp"
 
@@ -394,7 +394,7 @@ class Search {
 void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
                       const std::function<void()>& wanted_pause, LinearSweep& sweep) {
   const std::function<void()> pause = wanted_pause ? wanted_pause : [] {};
-  DampedPoles poles{DampedPairs(system),
+  DampedPoles poles{DampedPairs(system, response.complex_stiffnesses().held()),
                     [&](double speed, double omega) { return response.mode_matrices(speed, omega); }};
   find_sweep_modes(system, response, pause, sweep, poles);
   Search search(response, sum, pause, sweep, poles);

@@ -140,7 +140,7 @@ ReductionChoice choose_reduction(const System& system, double within,
   if (const auto why = why_not_exact(system)) return refuse("exact propagation cannot be used: " + *why);
   const int elastic = system.elastic_mode_count();
   if (elastic < 2) return refuse("it has no mode to leave out");
-  const ModeSet modes = solve_modes(system, {.count = std::min(elastic, kMostModes)});
+  const ModeSet modes = solve_modes(system, {.count = std::min(elastic, kMostModes), .in_time = true});
   const Predictor predictor(system, modes, duration);
   std::vector<double> errors(idx(modes.count() + 1), 0.0);
   for (const Channel& channel : find_channels(system, channels)) {

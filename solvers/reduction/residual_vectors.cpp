@@ -118,10 +118,10 @@ KeptModes kept_modes(const System& system, int count, double up_to_Hz) {
         {{system.name() + "/reduction", "system", "no elastic mode", "", "there is nothing to leave out"}});
   // One more than is kept, where there is one: the first left out.
   int ask = std::min(all, count > 0 ? count + 1 : 10);
-  ModeSet modes = solve_modes(system, {.count = ask});
+  ModeSet modes = solve_modes(system, {.count = ask, .in_time = true});
   while (count == 0 && ask < all && modes.frequency_Hz.back() <= up_to_Hz) {
     ask = std::min(all, 2 * ask);
-    modes = solve_modes(system, {.count = ask});
+    modes = solve_modes(system, {.count = ask, .in_time = true});
   }
   KeptModes kept;
   kept.rigid = modes.rigid_modes;

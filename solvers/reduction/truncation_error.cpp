@@ -61,7 +61,7 @@ TruncationError::TruncationError(const System& full, const Reduction& reduction,
   const int elastic = full.elastic_mode_count();
   const int wanted =
       std::min(elastic, reduction.modes + (count > 0 ? count : kFollowed + 2 * reduction.modes));
-  const ModeSet modes = solve_modes(full, {.count = wanted});
+  const ModeSet modes = solve_modes(full, {.count = wanted, .in_time = true});
   all_followed_ = wanted == elastic;
   // Modes that the reduced space holds leave nothing.
   const Eigen::MatrixXd& r = basis_;

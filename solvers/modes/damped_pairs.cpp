@@ -1,7 +1,4 @@
-#include "solvers/periodic/damped_pairs.hpp"
-
-#include <drev/core/assembler.hpp>
-#include <drev/solvers/periodic/linear_sweep.hpp>
+#include "solvers/modes/damped_pairs.hpp"
 
 #include <cmath>
 #include <complex>
@@ -17,8 +14,8 @@ using Complex = std::complex<double>;
 
 constexpr int kMostSteps = 25;
 constexpr double kPairSettled = 1e-12;  // last change of lambda relative to lambda [-]
-// Difference of lambda relative to it below which shapes are any of their common space [-], and the part of N that is rounding there.
-constexpr double kCoincide = 1e-7, kSameShape = 1e-6;
+constexpr double kSameShape = 1e-6;     // part of N that is rounding where modes coincide [-]
+constexpr double kSameMode = 1e-9;      // relative difference of lambda of one and the same mode [-]
 
 /// The product A x, with A given by its values on the pattern.
 Eigen::VectorXcd pair_product(const SparseMatrix& pattern, const Vector& values, const Eigen::VectorXcd& x) {
@@ -31,9 +28,8 @@ Eigen::VectorXcd pair_product(const SparseMatrix& pattern, const Vector& values,
 
 }  // namespace
 
-DampedPairs::DampedPairs(const System& system) : pattern_(system.pattern()), elimination_(system.pattern()) {
-  Assembler(system).contact_values({1.0, 0.0, 0.0}, Contact::closed, mass_);
-}
+DampedPairs::DampedPairs(const System& system, const std::vector<bool>& held)
+    : pattern_(system.pattern()), mass_(system.mass_values()), elimination_(system.pattern(), held) {}
 
 bool DampedPairs::refine(const std::function<ModeMatrices(double)>& matrices, Complex& lambda,
                          Eigen::VectorXcd& shape) {
@@ -66,6 +62,44 @@ bool DampedPairs::refine(const std::function<ModeMatrices(double)>& matrices, Co
   return false;
 }
 
+bool DampedPairs::take_on(const Path& matrices, int steps, Complex& lambda, Eigen::VectorXcd& shape) {
+  Complex found = lambda;
+  Eigen::VectorXcd its = shape;
+  for (int step = 1; step <= steps; ++step) {
+    const double part = static_cast<double>(step) / steps;
+    if (!refine([&](double omega) { return matrices(part, omega); }, found, its)) return false;
+  }
+  lambda = found, shape = its;
+  return true;
+}
+
+bool DampedPairs::take_all_on(const Path& matrices, double highest, const std::function<void()>& pause,
+                              Eigen::VectorXcd& lambda, Eigen::MatrixXcd& shapes) {
+  constexpr double kLike = 0.999;  // likeness of two shapes that are one [-]
+  const Eigen::MatrixXcd given = shapes;
+  const Eigen::VectorXcd from = lambda;
+  std::vector<Eigen::Index> lost;
+  for (const int steps : {kFewSteps, 8 * kFewSteps, 64 * kFewSteps}) {
+    lost.clear();
+    shapes = given;
+    for (Eigen::Index m = 0; m < given.cols(); ++m) {
+      if (pause) pause();
+      lambda[m] = from[m];
+      const bool matters = std::abs(lambda[m]) <= highest;
+      Eigen::VectorXcd shape = given.col(m);
+      bool good = take_on(matrices, matters ? steps : kFewSteps, lambda[m], shape);
+      for (Eigen::Index j = 0; j < m && good && matters; ++j)
+        good = std::abs(lambda[j] - lambda[m]) > kSameMode * std::abs(lambda[m]) ||
+               std::abs(shape.dot(shapes.col(j))) < kLike * shape.norm() * shapes.col(j).norm();
+      if (good || !matters) shapes.col(m) = shape;
+      if (!good && matters) lost.push_back(m);
+    }
+    if (lost.empty()) return true;
+  }
+  for (const Eigen::Index m : lost) lambda[m] = 0.0;
+  return false;
+}
+
 Eigen::VectorXcd DampedPairs::residue(const DampedPole& pole, const Eigen::VectorXcd& p) const {
   const Eigen::MatrixXcd x = pole.shapes.colwise().normalized();
   Eigen::MatrixXcd n(x.cols(), x.cols());
@@ -85,47 +119,6 @@ Eigen::VectorXcd DampedPairs::residue(const DampedPole& pole, const Eigen::Vecto
   right << force.real(), force.imag();
   const Vector y = least_squares(parts, right, kSameShape);
   return x * (y.head(k) + Complex(0.0, 1.0) * y.tail(k));
-}
-
-DampedPole DampedPoles::at(const SweepModes& modes, Eigen::Index mode, double speed) {
-  Eigen::Index nearest = 0;
-  (modes.speeds.array() - speed).abs().minCoeff(&nearest);
-  const auto column = static_cast<std::size_t>(nearest);
-  const Eigen::VectorXcd& all = lambda[column];
-  const auto coincides = [](Complex a, Complex b) { return std::abs(a - b) <= kCoincide * std::abs(b); };
-  std::vector<Eigen::Index> same{mode};
-  for (Eigen::Index j = 0; j < all.size(); ++j)
-    if (j != mode && coincides(all[j], all[mode])) same.push_back(j);
-  DampedPole pole{{}, all(same), shapes[column](Eigen::all, same)};
-  // Asked for only where it is needed: loads that are called are looked at anew at another speed.
-  const auto damping_of = [&](double at, Complex of) { return matrices(at, of.imag()).damping; };
-  if (modes.speeds.size() == 1) {
-    pole.damping = damping_of(modes.speeds[nearest], all[mode]);
-    return pole;
-  }
-  const Complex guess = modes.at(mode, speed);
-  DampedPole here{{}, pole.lambda, pole.shapes};
-  Eigen::Index count = 0;
-  for (Eigen::Index j = 0; j < pole.lambda.size(); ++j) {
-    Complex found = guess;
-    Eigen::VectorXcd shape = pole.shapes.col(j);
-    bool good = pairs.refine([&](double omega) { return matrices(speed, omega); }, found, shape);
-    for (Eigen::Index k = 0; k < all.size() && j == 0; ++k)
-      good &=
-          all[k] == 0.0 || coincides(all[k], all[mode]) || std::abs(found - all[k]) > std::abs(found - guess);
-    if (!good && j == 0) {
-      pole.damping = damping_of(modes.speeds[nearest], all[mode]);
-      pole.lambda.setConstant(guess);
-      return pole;
-    }
-    if (!good || (j > 0 && !coincides(found, here.lambda[0]))) continue;
-    here.lambda[count] = found;
-    here.shapes.col(count++) = shape;
-  }
-  here.damping = damping_of(speed, here.lambda[0]);
-  here.lambda = here.lambda.head(count).eval();
-  here.shapes = here.shapes.leftCols(count).eval();
-  return here;
 }
 
 }  // namespace drev
