@@ -2,6 +2,7 @@
 
 #include <drev/core/assembler.hpp>
 #include <drev/core/channel.hpp>
+#include <drev/core/law/frequency_stiffness.hpp>
 #include <drev/core/scalar_force.hpp>
 #include <drev/solvers/start.hpp>
 
@@ -27,9 +28,26 @@ bool bent(const ScalarTerm& term) {
          (pieces.empty() || std::any_of(pieces.begin(), pieces.end(), other));
 }
 
-}  // namespace
+/// The load under which modes have the stiffness of couplings that follow it.
+std::vector<std::string> load_notes(const System& system) {
+  std::vector<std::string> notes;
+  for (const FrequencyTerm& term : system.frequency_terms()) {
+    const CarriedLoad load = term.stiffness->load_in_matrices();
+    std::vector<std::string> taken;
+    if (term.stiffness->follows_mean_torque())
+      taken.push_back("its at_mean_torque, " + short_digits(load.mean_torque, kSlopeDigits) + " N m");
+    if (term.stiffness->amplitudes().size() > 1)
+      taken.push_back("its at_amplitude, " + short_digits(load.amplitude, kSlopeDigits) + " rad");
+    if (taken.empty()) continue;
+    notes.push_back(
+        system.element_instances()[idx(index(term.element))].name + ": modes have its stiffness under " +
+        join(taken, " and ") +
+        (term.stiffness->follows_mean_torque() ? "; drev campbell takes the mean torque at each speed" : ""));
+  }
+  return notes;
+}
 
-std::vector<std::string> modes_notes(const ModelRequest& model) {
+std::vector<std::string> bend_notes(const ModelRequest& model) {
   const System& system = model.system;
   std::vector<const ScalarTerm*> terms;
   for (const ScalarTerm& term : system.scalars())
@@ -69,6 +87,14 @@ std::vector<std::string> modes_notes(const ModelRequest& model) {
     notes.push_back(taken + "; under the mean of the loads it carries " + short_digits(at.y, 4) + " " + unit +
                     ", where its law has " + slope_text(at.dy_dx) + ": about that they are others");
   }
+  return notes;
+}
+
+}  // namespace
+
+std::vector<std::string> modes_notes(const ModelRequest& model) {
+  std::vector<std::string> notes = bend_notes(model);
+  for (std::string& note : load_notes(model.system)) notes.push_back(std::move(note));
   return notes;
 }
 

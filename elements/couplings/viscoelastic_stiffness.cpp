@@ -13,6 +13,8 @@ constexpr double kFastest = 8.0;  // c_j/m_j over the highest frequency of the f
 constexpr int kPoints = 80;       // frequencies of the fit
 constexpr int kSweeps = 20000;    // sweeps of the coordinate descent at most
 constexpr int kMostBranches = 12;
+constexpr double kLeastStatic =
+    0.1;  // k_0 over the stated static stiffness, so that it carries a mean torque [-]
 
 double table_value(const std::vector<double>& at, const std::vector<double>& values, double x) {
   if (x <= at.front()) return values.front();
@@ -21,9 +23,9 @@ double table_value(const std::vector<double>& at, const std::vector<double>& val
   return values[i - 1] + (values[i] - values[i - 1]) * (x - at[i - 1]) / (at[i] - at[i - 1]);
 }
 
-/// Least squares |A x - 1|, x >= 0, from A'A and A'1: coordinate descent, which cannot leave x >= 0.
+/// Least squares |A x - 1|, x >= 0, x_0 >= least, from A'A and A'1: coordinate descent, which cannot leave these.
 std::vector<double> non_negative_fit(const std::vector<std::vector<double>>& normal,
-                                     const std::vector<double>& right) {
+                                     const std::vector<double>& right, double least) {
   const std::size_t n = right.size();
   std::vector<double> x(n, 0.0);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
@@ -31,7 +33,7 @@ std::vector<double> non_negative_fit(const std::vector<std::vector<double>>& nor
     for (std::size_t i = 0; i < n; ++i) {
       double residual = right[i];
       for (std::size_t j = 0; j < n; ++j) residual -= normal[i][j] * x[j];
-      const double next = std::max(0.0, x[i] + residual / normal[i][i]);
+      const double next = std::max(i == 0 ? least : 0.0, x[i] + residual / normal[i][i]);
       moved = std::max(moved, std::abs(next - x[i]));
       size = std::max(size, next);
       x[i] = next;
@@ -132,7 +134,7 @@ void ViscoelasticStiffness::fit() {
       for (std::size_t j = 0; j < n; ++j) normal[i][j] += (std::conj(row[i]) * row[j]).real();
     }
   });
-  const std::vector<double> found = non_negative_fit(normal, right);
+  const std::vector<double> found = non_negative_fit(normal, right, kLeastStatic * at(0.0).real());
   static_stiffness_ = found[0];
   for (std::size_t j = 0; j < unit.size(); ++j)
     if (found[j + 1] > 1e-9 * found[0])

@@ -10,20 +10,20 @@
 ///   k = k_f(f) k_m(|T_m|)/k_m,1 k_A(A)/k_A,1,        eta alike
 ///
 /// A = sqrt(sum |X_h|^2) over the orders h (for one order its amplitude): an equivalent linearisation, solved for at each
-/// speed of a sweep; T_m is the mean torque at that speed. In time, with contacts followed and for damped modes both stand at `at_mean_torque`
-/// and `at_amplitude`; modes of a sweep have k* at their own frequency, under the mean torque and `at_amplitude`. Relative damping psi (loss a cycle over elastic energy) = 2 pi eta. In linear sweeps k* holds exactly at every
-/// order. In those others a chain of Maxwell branches stands for it,
+/// speed of a sweep; T_m is the mean torque at that speed. In time, with contacts followed and for modes both stand at
+/// `at_mean_torque` and `at_amplitude`; modes of a sweep have the mean torque at each speed. Modes have k* at their own frequency
+/// f = Im lambda/(2 pi), its loss as a damping Im k*/(2 pi f). Relative damping psi (loss a cycle over elastic energy) = 2 pi eta.
+/// In linear sweeps and modes k* holds exactly at every order. In time and with contacts followed a chain of Maxwell branches stands for it,
 ///
 ///   G(s) = k_0 + sum_j k_j (c_j s + m_j s^2)/(k_j + c_j s + m_j s^2),     c_j = tau_j k_j,  m_j = c_j/(8 w_high)
 ///
-/// fitted with k_0, k_j >= 0 to k* over lowest_frequency <= f <= highest_frequency (least squares of the relative
+/// fitted with k_j >= 0, k_0 >= Re k*(0)/10 to k* over lowest_frequency <= f <= highest_frequency (least squares of the relative
 /// error at 80 frequencies, evenly on a log scale; tau_j even on a log scale between 1/(2 w_high) and 2/w_low).
 /// fit_error() is the largest |G - k*|/|k*| there. No causal material has both k and eta constant: k then grows by
 /// (2/pi) eta ln 10 = 1.47 eta a decade, so that for eta = 0.1 the error over a decade is 5 %. Keep the band
 /// to what matters, about the resonance; fit_error is refused above `permitted_error`.
 ///
-/// m_j makes a node of each branch's inner point that methods in time can step; it is part of the fit. Undamped modes
-/// see it as an inertia and list modes of the branches: use damped modes (drev modes --damped) and the sweep.
+/// m_j makes a node of each branch's inner point that methods in time can step; it is part of the fit.
 /// Below the band the chain's stiffness falls to its static one, k_0, which carries the mean torque in time. The fit chooses it, so
 /// that it may be far below k: over an octave 0.86 k for eta = 0.1, 0.55 k for 0.3, 0.26 k for 0.5. Means of linear sweeps have
 /// Re k*(0), the stated stiffness, under the load that is taken in time.
