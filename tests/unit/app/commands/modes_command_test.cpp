@@ -1,4 +1,7 @@
 // drev modes of springs that are bent: they are about zero deflection, and say so where a mean torque is elsewhere.
+#include <drev/core/units.hpp>
+
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -51,6 +54,28 @@ TEST_CASE("Modes of a bent spring name the torque that holds it, and its stiffne
   CHECK(contains(free.out, "coupling: modes are about zero deflection, with 2000 N m/rad; its law is"));
   CHECK_FALSE(contains(drev_command({"modes", "two_mass_backlash"}).out, "bent"));
   CHECK_FALSE(contains(drev_command({"modes", "camshaft"}).out, "bent"));
+}
+
+TEST_CASE("Modes of a coupling that follows its load say which, and have one frequency for its chain") {
+  const drev::test::TemporaryFolder folder;
+  const std::string path = (folder / "coupling.toml").string();
+  std::ofstream(path)
+      << "format = 1\n[nodes]\na = {}\nb = {}\n[elements]\n"
+         "Ja = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 2 }\n"
+         "Jb = { type = \"inertia\", node = \"b\", inertia_kg_m2 = 2 }\n"
+         "rubber = { type = \"elastic_coupling\", nodes = [\"a\", \"b\"], by_mean_torque = { "
+         "mean_torque_Nm = [0, 400], stiffness_Nm_per_rad = [1000, 5000], loss_factor = [0.1, 0.1] "
+         "}, at_mean_torque_Nm = 200, lowest_frequency_Hz = 5, highest_frequency_Hz = 15 }\n";
+  const auto run = drev_command({"modes", path, "--json"});
+  INFO(run.out << run.err);
+  REQUIRE(run.exit_code == 0);
+  const Json found = Json::parse(run.out);
+  REQUIRE(found.at("frequencies_Hz").size() == 1);
+  CHECK(found["frequencies_Hz"][0].get<double>() == Approx(std::sqrt(3000.0) / drev::kTwoPi).epsilon(1e-12));
+  REQUIRE(found.at("notes").size() == 1);
+  CHECK(contains(found["notes"][0].get<std::string>(), "its at_mean_torque, 200 N m; drev campbell takes"));
+  CHECK(contains(drev_command({"modes", path, "--damped"}).out, "its at_mean_torque, 200 N m"));
+  CHECK(contains(drev_command({"modes", path, "--count", "2"}).err, "to 1"));
 }
 
 TEST_CASE("A free train whose modes do not swing turns freely, and does not grow by rounding") {
