@@ -22,6 +22,11 @@ struct CrankSlider {
     const double w_3 = (4.0 * r_2 * s * c - 3.0 * w_1 * w_2) / w;
     return {-radius * s + w_1, -radius * c + w_2, radius * s + w_3};
   }
+  /// Bounds of the sizes of dx/da and d2x/da2 [m].
+  Derivatives most() const {
+    const double r_2 = radius * radius, w = std::sqrt(rod * rod - r_2), w_1 = 0.5 * r_2 / w;
+    return {radius + w_1, radius + (r_2 + w_1 * w_1) / w, 0.0};
+  }
   /// Mean of (dx/da)^2 over a turn [m^2]: mean inertia of a mass of 1 kg at the pin.
   double mean_square() const {
     constexpr int kPoints = 256;  // of a function as smooth as this: exact to rounding for l > 1.2 r

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 namespace drev {
 
@@ -22,6 +23,13 @@ EngineCylinders::EngineCylinders(Params params)
       gas_(params_.gas, cycle(params_.strokes)) {
   for (std::size_t k = 0; k < params_.firing_angles.size(); ++k)
     cylinders_.emplace_back(*this, static_cast<int>(k));
+  constexpr int kAngles = 720;
+  constexpr double kBetween = 1.01;  // of a curve as smooth as this, between as many
+  for (int i = 0; i < kAngles; ++i) {
+    const CrankSlider::Derivatives x = crank_.at(kTwoPi * i / kAngles);
+    most_by_speed_squared_ =
+        std::max(most_by_speed_squared_, kBetween * std::abs(params_.oscillating_mass * x.first * x.second));
+  }
 }
 
 namespace {
@@ -132,6 +140,25 @@ LoadResponse EngineCylinders::Cylinder::evaluate(const LoadInput& in) const {
     const Dual of_gas = in.nominal_speed != 0.0 ? Dual(in.nominal_speed) : speed;
     return torque(angle - p.firing_angles[static_cast<std::size_t>(number_)], speed, of_gas);
   });
+}
+
+std::optional<LoadSlopes> EngineCylinders::Cylinder::steepest(const LoadRanges& over) const {
+  LoadSlopes slopes{.by_angle = std::numeric_limits<double>::infinity()};
+  if (!engine_.params_.twist_feedback) return slopes;
+  const double fastest = std::max(std::abs(over.speed.low), std::abs(over.speed.high));
+  slopes.by_speed = 2.0 * engine_.most_by_speed_squared_ * fastest;
+  // Under a nominal motion the gas follows its speed, and not the actual one.
+  if (over.nominal_speed.low > 0.0 || over.nominal_speed.high < 0.0) return slopes;
+  const double firing = engine_.params_.firing_angles[static_cast<std::size_t>(number_)];
+  const Interval angle{over.angle.low - firing, over.angle.high - firing};
+  const double middle = 0.5 * (angle.low + angle.high), half = 0.5 * (angle.high - angle.low);
+  const CrankSlider::Derivatives most = engine_.crank_.most();
+  const double first = std::min(most.first, std::abs(engine_.crank_.at(middle).first) + half * most.second);
+  const double slowest = std::max({0.0, over.speed.low, -over.speed.high});
+  slopes.by_speed += engine_.area_ * first *
+                     engine_.gas_.steepest_by_speed(angle, {slowest, fastest},
+                                                    engine_.params_.misfiring_cylinder == number_ + 1);
+  return slopes;
 }
 
 Dual EngineCylinders::Cylinder::torque(const Dual& angle, const Dual& speed, const Dual& speed_of_gas) const {

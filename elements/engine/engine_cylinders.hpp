@@ -97,6 +97,8 @@ class EngineCylinders final : public Element {
     Cylinder(const EngineCylinders& engine, int number) : engine_(engine), number_(number) {}
     LoadResponse evaluate(const LoadInput& in) const override;
     bool depends_on_motion() const override { return engine_.params_.twist_feedback; }
+    /// Over the angle it jumps as its table does, which its knots tell: that slope has no bound.
+    std::optional<LoadSlopes> steepest(const LoadRanges& over) const override;
     /// w^2 of the mass torque, 1 of what the speed does not move, then those of the gas pressure's curves.
     std::vector<double> speed_factors(double speed) const override;
     double curve(int k, double angle) const override;
@@ -124,6 +126,7 @@ class EngineCylinders final : public Element {
   Params params_;
   CrankSlider crank_;
   double area_ = 0.0, mean_inertia_ = 0.0;  // of the oscillating mass [kg m^2]
+  double most_by_speed_squared_ = 0.0;      // largest size of G [N m s^2/rad^2]
   GasPressure gas_;
   std::vector<Cylinder> cylinders_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace drev {
 
@@ -43,6 +44,14 @@ GasPressure::GasPressure(Params params, double period) : params_(std::move(param
   curves_ = CurveFamily(std::move(curves), std::move(values));
   reference_ = p.reference_pressure > 0.0 ? p.reference_pressure
                                           : *std::max_element(p.pressure.begin(), p.pressure.end());
+  bends_ = p.peak_speed;
+  if (!p.speed.empty()) bends_.insert(bends_.end(), curves_.parameters().begin(), curves_.parameters().end());
+  const SpeedGate& gate = p.firing;
+  for (const double bend :
+       {gate.from_speed, gate.from_speed + gate.speed_ramp, gate.to_speed - gate.speed_ramp, gate.to_speed})
+    if (!std::isnan(bend)) bends_.push_back(bend);
+  std::sort(bends_.begin(), bends_.end());
+  bends_.erase(std::unique(bends_.begin(), bends_.end()), bends_.end());
 }
 
 double GasPressure::mirrored(double& angle, bool misfires) const {
@@ -160,6 +169,49 @@ CubicPiece GasPressure::ungated_piece(double angle, double direction, const std:
     for (std::size_t j = 0; j < c.terms.size(); ++j, factor *= side) sum.terms[j] += factor * c.terms[j];
   }
   return sum;
+}
+
+double GasPressure::steepest_by_speed(const Interval& angle, const Interval& size, bool misfires) const {
+  double most = 0.0;
+  for (std::size_t i = 1; i < bends_.size(); ++i) {
+    const double a = bends_[i - 1], b = bends_[i];
+    if (b < size.low || a > size.high) continue;
+    const auto parts_at = [&](double x) { return misfires ? ungated_factors(x) : factors(x); };
+    const std::vector<double> first = parts_at(a), middle = parts_at(0.5 * (a + b)), last = parts_at(b);
+    for (const double x : {std::max(a, size.low), std::min(b, size.high)}) {
+      const double u = (x - a) / (b - a);
+      std::vector<double> slopes(first.size());
+      for (std::size_t k = 0; k < slopes.size(); ++k)
+        slopes[k] =
+            ((4.0 * u - 3.0) * first[k] + (4.0 - 8.0 * u) * middle[k] + (4.0 * u - 1.0) * last[k]) / (b - a);
+      most = std::max(most, largest(angle, slopes, misfires));
+    }
+  }
+  return most;
+}
+
+/// The largest size of the curves with these parts over a range of the angle; parts as of factors().
+double GasPressure::largest(const Interval& angle, const std::vector<double>& parts, bool misfires) const {
+  const auto curves = static_cast<std::ptrdiff_t>(curves_.curves().size());
+  const std::vector<double> fired(parts.begin(), parts.begin() + curves),
+      compressed(parts.begin() + curves, parts.end());
+  const double end = std::min(angle.high, angle.low + period_);
+  double most = 0.0;
+  double at = angle.low, high = at;
+  do {
+    CubicPiece piece = ungated_piece(at, 1.0, fired, misfires);
+    high = piece.high;
+    if (!compressed.empty()) {
+      const CubicPiece other = ungated_piece(at, 1.0, compressed, true);
+      high = std::min(high, other.high);
+      for (std::size_t j = 0; j < piece.terms.size(); ++j) piece.terms[j] += other.terms[j];
+    }
+    const double reach = std::max(0.0, std::min(high, end) - at);
+    double bound = 0.0;
+    for (std::size_t j = piece.terms.size(); j-- > 0;) bound = bound * reach + std::abs(piece.terms[j]);
+    most = std::max(most, bound);
+  } while (high > std::exchange(at, high) && at < end);
+  return most;
 }
 
 void GasPressure::check(ParameterCheck& check) const {

@@ -11,6 +11,7 @@
 ///
 /// Gate by speed (curve.hpp) over the size of the speed: g p of the curve + (1 - g) p of the compression alone, so
 /// that an engine that is cranked fires from a speed on, and one whose governor cuts the fuel stops firing above another.
+#include <drev/core/law/law_piece.hpp>
 #include <drev/elements/curve.hpp>
 #include <drev/elements/periodic_curve.hpp>
 
@@ -49,6 +50,8 @@ class GasPressure {
   double curve(int k, double angle, bool misfires) const;
   /// The pressure about an angle as a cubic, from knot to knot of its curves (a KnottedLoad's piece).
   CubicPiece piece(double angle, double direction, double speed, bool misfires) const;
+  /// The largest size of its slope by the size of the speed, over ranges of the angle and of that size [Pa s/rad].
+  double steepest_by_speed(const Interval& angle, const Interval& size, bool misfires) const;
   bool follows_speed() const {
     return !params_.speed.empty() || !params_.peak_speed.empty() || params_.firing.gated();
   }
@@ -65,11 +68,13 @@ class GasPressure {
   std::vector<double> ungated_factors(double size) const;
   CubicPiece ungated_piece(double angle, double direction, const std::vector<double>& parts,
                            bool misfires) const;
+  double largest(const Interval& angle, const std::vector<double>& parts, bool misfires) const;
   double firing_part(double size) const { return params_.firing.at(size).value; }
   double mirrored(double& angle, bool misfires) const;  // -1 behind the firing dead centre, with its angle
   Params params_;
   double period_ = 0.0, reference_ = 0.0;
   CurveFamily curves_;
+  std::vector<double> bends_;  // sizes of the speed between which its factors are parabolas, ascending
   bool sizes_fit_ = false;
 };
 

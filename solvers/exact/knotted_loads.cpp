@@ -197,8 +197,8 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
     for (const double term : turn_) end += term;
     knots = rises ? end > ahead : end < ahead;
   }
-  // It bends at speeds, too, which no knot tells, so that the nodes have to follow it: a step ends at its knot.
-  if (l.feedback && l.knots->piece_follows_speed()) {
+  // The nodes have to follow it: a step ends at its knot.
+  if (l.is_called()) {
     const double over = std::max(l.angle + high - l.piece.high, l.piece.low - l.angle - low);
     if (knots && over > kTurnRounding * std::max(1.0, std::abs(l.angle)))
       l.strongest = monotone ? first_knot_inside(l, end) : kAtTurn;

@@ -138,7 +138,9 @@ class SmoothLoads::Between {
     const auto change = [](double slope, const Interval& x) {
       return x.high > x.low && slope > 0.0 ? slope * (x.high - x.low) : 0.0;
     };
-    return std::abs(load_.coeff) * (change(slopes->by_time, over.t) + change(slopes->by_angle, over.angle) +
+    // A load that says its knots does nothing over the angle between them that the nodes do not show.
+    const double by_angle = load_.knots != nullptr ? 0.0 : slopes->by_angle;
+    return std::abs(load_.coeff) * (change(slopes->by_time, over.t) + change(by_angle, over.angle) +
                                     change(slopes->by_speed, over.speed));
   }
 
@@ -202,7 +204,7 @@ void SmoothLoads::look_between(const TaylorSeries& series) {
   }();
   bool found = false;  // the path there
   for (Place& l : loads_) {
-    if (l.knots != nullptr) continue;
+    if (l.knots != nullptr && !l.is_called()) continue;
     Between between(*this, l, series);
     if (!between.divides()) {
       if (!std::exchange(found, true)) series.at_places(kPlaces, places.data(), path_.data(), rate_.data());

@@ -106,6 +106,8 @@ class SmoothLoads {
   };
   struct Place : TangentLoad, KnottedPlace {
     using TangentLoad::TangentLoad;
+    /// Says its knots, but is called as functions are: it bends at speeds, too, which no knot tells.
+    bool is_called() const { return feedback && knots != nullptr && knots->piece_follows_speed(); }
     bool kinked = false, unfinished = false;  // what this pass found of the load
     double strongest = 1.0;                   // of the knots passed
     double off_at_ends = 0.0;                 // GaussRule::off_at_ends() [N m], and between the nodes
