@@ -47,13 +47,16 @@ ButcherTableau bathe_tableau(std::string name, double rho_inf) {
 ButcherTableau sdirk4_tableau() {
   const Vector b = vector({25.0 / 24, -49.0 / 48, 125.0 / 16, -85.0 / 12, 0.25});
   const Vector third = vector({59.0 / 48, -17.0 / 96, 225.0 / 32, -85.0 / 12, 0.0});
-  return tableau("sdirk4", 4,
-                 {{0.25},
-                  {0.5, 0.25},
-                  {17.0 / 50, -1.0 / 25, 0.25},
-                  {371.0 / 1360, -137.0 / 2720, 15.0 / 544, 0.25},
-                  {25.0 / 24, -49.0 / 48, 125.0 / 16, -85.0 / 12, 0.25}},
-                 b, b - third);
+  ButcherTableau sdirk4 = tableau("sdirk4", 4,
+                                  {{0.25},
+                                   {0.5, 0.25},
+                                   {17.0 / 50, -1.0 / 25, 0.25},
+                                   {371.0 / 1360, -137.0 / 2720, 15.0 / 544, 0.25},
+                                   {25.0 / 24, -49.0 / 48, 125.0 / 16, -85.0 / 12, 0.25}},
+                                  b, b - third);
+  // A cubic through the stages at 1/4, 3/4, 1/2 and 1.
+  sdirk4.to_start = vector({4.0, 4.0, 0.0, -6.0, -1.0});
+  return sdirk4;
 }
 
 ButcherTableau rk4_tableau() {

@@ -21,7 +21,10 @@ struct ButcherTableau {
   /// Weights of the stages' rates in the local error of the embedded formula, e_i = b_i - b^_i (explicit: one
   /// more for the rate at the end). Empty: none.
   Vector e;
+  /// Weights of values at the stages that carry on their polynomial to the start; empty where a stage is there.
+  Vector to_start = {};
 
+  bool starts_late() const { return to_start.size() > 0; }
   int stages() const { return static_cast<int>(b.size()); }
   double diagonal() const { return a(a.rows() - 1, a.rows() - 1); }
 };

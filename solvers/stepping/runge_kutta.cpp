@@ -1,12 +1,15 @@
 #include "solvers/stepping/runge_kutta.hpp"
 
+#include <cmath>
+
 namespace drev {
 
 RungeKutta::RungeKutta(const System& system, const StepScheme& scheme, const StepOptions& options)
     : Stepper(system, scheme, options),
       tableau_(*equation_.scheme().tableau),
       rate_(static_cast<std::size_t>(tableau_.stages() + 1)),
-      acceleration_(rate_.size()) {}
+      acceleration_(rate_.size()),
+      loads_(tableau_.starts_late() ? idx(tableau_.stages()) : 0) {}
 
 void RungeKutta::combine(const EvaluatedState& from, double h, const double* weights, Eigen::Index stride,
                          int count, Vector& z, Vector& v) const {
@@ -57,6 +60,7 @@ NewtonResult RungeKutta::step(const EvaluatedState& from, double h, double t_new
     if (solved.status != NewtonStatus::converged) return result;
     rate_[idx(i)] = to.state.v;
     acceleration_[idx(i)] = to.state.a;
+    if (!loads_.empty()) loads_[idx(i)] = to.p;
   }
   to.state.t = t_new;
   equation_.clock().enter(RunSection::linear);
@@ -91,6 +95,23 @@ void RungeKutta::estimate(const EvaluatedState& from, const EvaluatedState& to, 
     }
   }
   if (tableau_.diagonal() > 0.0) equation_.filter(h, e_z, e_v);
+  if (!loads_.empty()) add_change_before_stages(from, h, e_z, e_v);
+}
+
+void RungeKutta::add_change_before_stages(const EvaluatedState& from, double h, Vector& e_z, Vector& e_v) {
+  Vector beyond = -from.p;
+  for (Eigen::Index i = 0; i < tableau_.to_start.size(); ++i)
+    if (tableau_.to_start[i] != 0.0) beyond += tableau_.to_start[i] * loads_[static_cast<std::size_t>(i)];
+  if (beyond.isZero(0.0)) return;
+  Vector more_z = Vector::Zero(e_z.size()), more_v;
+  equation_.acceleration(beyond, more_v);
+  more_v *= tableau_.c.minCoeff() * h;
+  equation_.filter(h, more_z, more_v);
+  const auto add = [](const Vector& more, Vector& e) {
+    for (Eigen::Index i = 0; i < e.size(); ++i) e[i] += std::copysign(std::abs(more[i]), e[i]);
+  };
+  add(more_z, e_z);
+  add(more_v, e_v);
 }
 
 }  // namespace drev

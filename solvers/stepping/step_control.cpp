@@ -1,8 +1,14 @@
 #include "solvers/stepping/step_control.hpp"
 
+#include <drev/core/assembler.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
+
+#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 
@@ -14,6 +20,32 @@ constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 constexpr double kRateRounding = std::numeric_limits<double>::epsilon();  // rounding of v_1 - v_0
 constexpr double kTooShort = 0.05;                                        // E with which the step grows
 constexpr double kLeastError = 1e-6;                                      // as far as the controller looks
+
+/// The motions as a rigid body of the floating parts that have others too, contacts closed: columns over the unknowns, of norm 1.
+/// None where the stiffness holds something unstable.
+Eigen::MatrixXd rigid_motions(const System& system) {
+  Vector stiffness;
+  Assembler(system).contact_values({0.0, 0.0, 1.0}, Contact::closed, stiffness);
+  const double hold = stiffness.size() > 0 ? stiffness.cwiseAbs().maxCoeff() : 0.0;
+  std::vector<int> held;
+  for (const std::string& name : system.floating_parts(Contact::closed))
+    if (const int unknown = system.node_map(system.node(name)).unknown; unknown >= 0) held.push_back(unknown);
+  Eigen::MatrixXd motions(system.size(), 0);
+  if (held.empty() || !(hold > 0.0)) return motions;
+  for (const int unknown : held) stiffness[system.diagonal_slots()[idx(unknown)]] += hold;
+  SparseCholesky factor(system.pattern());
+  if (factor.factorize(system.pattern(), stiffness) != FactorStatus::success) return motions;
+  for (const int unknown : held) {
+    Vector x = Vector::Zero(system.size());
+    x[unknown] = hold;
+    factor.solve(x, x);
+    if ((x.array() != 0.0).count() < 2) continue;
+    motions.conservativeResize(Eigen::NoChange, motions.cols() + 1);
+    motions.rightCols(1) = x.normalized();
+  }
+  return motions;
+}
+
 }  // namespace
 
 StepControl::StepControl(const System& system, const Options& options)
@@ -23,10 +55,7 @@ StepControl::StepControl(const System& system, const Options& options)
     if (map.unknown < 0) continue;
     kind_[idx(map.unknown)] = system.node_kind(node) == NodeKind::translational;
   }
-  const Vector& direction = system.nominal_direction();
-  if (system.rigid_mode_count(Contact::closed) == 1 && direction.norm() > 0.0 &&
-      system.elastic_mode_count() > 0)
-    rigid_ = direction.normalized();
+  rigid_ = rigid_motions(system);
   stiffness_.setZero(system.size());
   law_forces_.setZero(system.size());
   for (Eigen::Index i = 0; i < stiffness_.size(); ++i)
@@ -44,13 +73,12 @@ void StepControl::set(double h) {
 
 StepControl::Scales StepControl::with(const State& state, double part) const {
   Scales s = scales_;
-  const bool floats = rigid_.size() > 0;
-  const double c_z = floats ? rigid_.dot(state.z) : 0.0, c_v = floats ? rigid_.dot(state.v) : 0.0;
-  for (Eigen::Index i = 0; i < state.z.size(); ++i) {
-    const double r = floats ? rigid_[i] : 0.0;
+  const Vector z = state.z - rigid_ * (rigid_.transpose() * state.z),
+               v = state.v - rigid_ * (rigid_.transpose() * state.v);
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
     const std::size_t kind = static_cast<std::size_t>(kind_[static_cast<std::size_t>(i)]);
-    s.z[kind] = std::max(s.z[kind], part * std::abs(state.z[i] - c_z * r));
-    s.v[kind] = std::max(s.v[kind], part * std::abs(state.v[i] - c_v * r));
+    s.z[kind] = std::max(s.z[kind], part * std::abs(z[i]));
+    s.v[kind] = std::max(s.v[kind], part * std::abs(v[i]));
   }
   return s;
 }
@@ -96,7 +124,9 @@ double StepControl::error(const State& end, const Vector& e_z, const Vector& e_v
     const double of_force = kRounding * h * force;
     const auto kind = static_cast<std::size_t>(kind_[unknown]);
     take(std::abs(e_z[i]), of_z, of_z, s.z[kind]);
-    take(std::abs(e_v[i]), of_v + of_force / inertia, of_v + of_force / solved, s.v[kind]);
+    const double by_deflection = std::sqrt(std::max(0.0, stiffness_[i]) / inertia) * s.z[kind];
+    take(std::abs(e_v[i]), of_v + of_force / inertia, of_v + of_force / solved,
+         std::max(s.v[kind], by_deflection));
   }
   const bool rounding = worst > share ? beyond_rounding <= share : beyond_solved <= kTooShort * share;
   return rounding ? std::min(kTooShort, worst / share) : worst / share;
@@ -110,13 +140,13 @@ void StepControl::accepted(double h, double error, bool as_planned) {
   // A step that was cut says little about longer ones.
   if (!as_planned) return set(std::max(h * factor, h_));
   last_error_ = e;
-  set(h * factor);
+  set(least_of(h * factor));
 }
 
 void StepControl::rejected(double h, double error) {
   const double q = options_.order;
   after_rejection_ = true;
-  set(h * std::clamp(kSafety * std::pow(error, -1.0 / q), kLeastFactor, 0.8));
+  set(least_of(h * std::clamp(kSafety * std::pow(error, -1.0 / q), kLeastFactor, 0.8)));
 }
 
 void StepControl::failed(double h) {

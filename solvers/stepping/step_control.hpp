@@ -5,7 +5,8 @@
 ///   h <- 0.9 h E^(-0.7/q) E_last^(0.4/q)      q: order of e/h
 ///
 /// T is the run's length. scale is the largest deviation, or rate, so far among unknowns of one kind
-/// (turning, moving along); of a system that floats, without the motion as a rigid body, unless it has no other. Implicit methods
+/// (turning, moving along), without the motions of floating parts as rigid bodies; parts that have no other keep these. A rate's error counts beside the
+/// rate at which the node, with the others held, would swing by the largest deviation. Implicit methods
 /// step on a grid of 2^(1/4), so that few matrices are factored. Source of the controller: K. Gustafsson,
 /// ACM TOMS 17, 1991, doi:10.1145/210232.210242.
 #include <drev/core/state.hpp>
@@ -20,6 +21,7 @@ class StepControl {
     double tolerance = 0.0;             ///< [-]
     double duration = 0.0;              ///< s, T
     double first = 0.0, largest = 0.0;  ///< s
+    double least = 0.0;                 ///< s; the error never asks for a shorter step
     int order = 2;                      ///< q
     bool on_grid = false;
   };
@@ -51,11 +53,12 @@ class StepControl {
   };
   Scales with(const State& state, double part) const;
   void set(double h);
+  double least_of(double h) const { return std::max(h, std::min(options_.least, options_.largest)); }
 
   const System& system_;
   Options options_;
   std::vector<int> kind_;  // 0 turning, 1 moving along
-  Vector rigid_;           // empty: does not float
+  Eigen::MatrixXd rigid_;  // motions of floating parts as rigid bodies, columns of norm 1
   Vector stiffness_;       // of each unknown, with the laws' where they are closed
   Vector law_forces_;      // sizes of the laws' elastic forces at the end of the step at hand
   double h_ = 0.0, last_error_ = 1.0;
