@@ -22,7 +22,7 @@ struct Balance {
   Number imbalance{};        ///< J, at the end: > 0 energy from nothing
   Number worst_imbalance{};  ///< J, largest in size over the run
   Number worst_time{};       ///< s
-  Number given{};            ///< J, largest of |input|, dissipated and the start's energy over the run
+  Number given{};            ///< J, largest of |input|, |dissipated| and the start's energy over the run
   Number scale{};            ///< J, largest of input, dissipated, kinetic + |stored| over the run
 };
 
@@ -42,11 +42,12 @@ template <class Number, class Value, class Mask>
                                               Mask& good) {
   const Value energy = kinetic + stored;
   const Value imbalance = energy - each(b.start) - input + dissipated;
-  Value size = imbalance, worst = each(b.worst_imbalance), put_in = input;
-  magnitude(size), magnitude(worst), magnitude(put_in);
+  Value size = imbalance, worst = each(b.worst_imbalance), put_in = input, lost = dissipated;
+  // What a law dissipates is below zero where it drives, as one does that states no energy.
+  magnitude(size), magnitude(worst), magnitude(put_in), magnitude(lost);
   good &= size <= std::numeric_limits<double>::max();
   Value given = each(b.given) < put_in ? put_in : each(b.given);
-  given = given < dissipated ? dissipated : given;
+  given = given < lost ? lost : given;
   Value scale = each(b.scale) < given ? given : each(b.scale);
   // A law's own energy may be below zero (a coupling that snaps through).
   Value held = stored;

@@ -1,6 +1,7 @@
 // Steps controlled by their estimated error: the estimate against the true local error, the tolerance
 // against the true error, outputs between steps, stops, energy.
 // Covers solvers/stepping/step_control.hpp through simulate().
+#include <drev/core/law_element.hpp>
 #include <drev/core/system.hpp>
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
@@ -11,6 +12,7 @@
 #include <drev/solvers/stepping/transient.hpp>
 
 #include <cmath>
+#include <functional>
 
 #include "solvers/stepping/stability_limit.hpp"
 #include "solvers/stepping/stepper.hpp"
@@ -285,5 +287,86 @@ TEST_CASE("Controlled steps: a short circuit far shorter than the steps of the r
       REQUIRE(simulate(s, {.scheme = step_scheme(name), .tolerance = 1e-5, .t_end = 10.0}, state, {}).ok());
       CHECK(state.v[0] == Approx(expected).epsilon(1e-4));
     }
+  }
+}
+
+TEST_CASE(
+    "A function of time that jumps or kinks keeps the tolerance, wherever the steps of sdirk4 meet it") {
+  for (const double at : {0.33, 0.55, 0.8125}) {
+    const auto angle_after = [&](const std::function<double(double)>& torque, double tolerance) {
+      Model m("disc");
+      m.add_node("a");
+      m.add<Inertia>("J", {"a"}, {.inertia = 1.0});
+      m.add<AppliedTorque>("T", {"a"}, {.torque = torque});
+      const System system = m.build();
+      State state = State::initial(system);
+      const RunSummary run =
+          simulate(system, {.scheme = step_scheme("sdirk4"), .tolerance = tolerance, .t_end = 2.0}, state);
+      CHECK(run.ok());
+      CHECK(run.steps < 5000);
+      return state.z[0];
+    };
+    const double left = 2.0 - at;
+    for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+      INFO("at " << at << " s, tolerance " << tolerance);
+      // 1 from there on; t up to there: z(2 s).
+      CHECK(angle_after([=](double t) { return t > at ? 1.0 : 0.0; }, tolerance) ==
+            Approx(0.5 * left * left).epsilon(std::max(tolerance, 1e-8)));
+      CHECK(angle_after([=](double t) { return std::min(t, at); }, tolerance) ==
+            Approx(at * at * at / 6.0 + 0.5 * at * at * left + 0.5 * at * left * left).epsilon(tolerance));
+    }
+  }
+}
+
+TEST_CASE("The torque of a shaft far stiffer than the train turns: errors count beside its twist") {
+  // Half of 1 N m goes through the shaft between two equal discs, which turn by 95 rad; its twist is 5e-10 rad.
+  for (const double stiffness : {1e6, 1e9, 1e10}) {
+    Model m("pair");
+    for (const char* name : {"a", "b"}) {
+      m.add_node(name);
+      m.add<Inertia>(std::string("J_") + name, {name}, {.inertia = 1.0});
+    }
+    m.add<ShaftSpring>("shaft", {"a", "b"}, {.stiffness = stiffness, .damping = 1e-4 * stiffness});
+    m.add<AppliedTorque>("T", {"a"}, {.table = TimeTable({0.0, 0.5, 0.5, 100.0}, {0.0, 0.0, 1.0, 1.0})});
+    const System system = m.build();
+    for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+      State state = State::initial(system);
+      const RunSummary run =
+          simulate(system, {.scheme = step_scheme("sdirk4"), .tolerance = tolerance, .t_end = 20.0}, state);
+      INFO(stiffness << " N m/rad, tolerance " << tolerance << ": " << run.brief_report());
+      CHECK(run.ok());
+      // One unit in the last place of 95 rad is 1.4e-14 rad.
+      const double rounding = 1e-13 * stiffness;
+      CHECK(std::abs(stiffness * (state.z[0] - state.z[1]) - 0.5) < 0.01 + rounding);
+      CHECK(state.z[0] == Approx(0.25 * 19.5 * 19.5).epsilon(1e-4));
+    }
+  }
+}
+
+TEST_CASE("A law that states no energy drives a train beside a weak load: what it gives was put in") {
+  // As a law of Python without energy: all of its power counts as dissipated.
+  struct Driving {
+    ScalarResponse operator()(const ScalarInput& in) const {
+      return {.y = 10.0 * in.x, .dy_dx = 10.0, .dissipated_power = 10.0 * in.x * in.x_dot};
+    }
+    static constexpr bool varies = true;
+  };
+  Model m("three discs");
+  for (const char* name : {"a", "b", "c"}) {
+    m.add_node(name);
+    m.add<Inertia>(std::string("J_") + name, {name}, {.inertia = 1.0});
+  }
+  m.set_initial("a", -0.1, 0.0);
+  m.add<LawElement<Driving>>("law", {"a", "b"}, Driving{});
+  m.add<ShaftSpring>("shaft", {"b", "c"}, {.stiffness = 1000.0});
+  m.add<Propeller>("load", {"c"}, {.rated_torque = 0.1, .rated_speed = 1.0});
+  const System system = m.build();
+  for (const char* name : {"rk4", "dormand_prince", "sdirk4"}) {
+    State state = State::initial(system);
+    const RunSummary run =
+        simulate(system, {.scheme = step_scheme(name), .tolerance = 1e-8, .t_end = 2.0}, state);
+    INFO(name << ": " << run.brief_report());
+    CHECK(run.ok());
+    CHECK(state.z[0] == Approx(-0.0409672390).epsilon(1e-6));
   }
 }
