@@ -22,6 +22,18 @@
 
 using namespace drev;
 
+namespace {
+
+/// 10 x, as a law of Python that states no energy: all of its power counts as dissipated.
+struct LawWithoutEnergy {
+  static constexpr bool varies = true;
+  ScalarResponse operator()(const ScalarInput& in) const {
+    return {.y = 10.0 * in.x, .dy_dx = 10.0, .dissipated_power = 10.0 * in.x * in.x_dot};
+  }
+};
+
+}  // namespace
+
 TEST_CASE("The estimate is the true local error on smooth steps") {
   // u = cos 2 pi t from t = 0.1: one step against the closed form. Methods with an embedded formula of lower
   // order estimate that formula's error; there the estimate must be no smaller than the method's own.
@@ -309,9 +321,9 @@ TEST_CASE(
     const double left = 2.0 - at;
     for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
       INFO("at " << at << " s, tolerance " << tolerance);
-      // 1 from there on; t up to there: z(2 s).
+      // 1 from there on, where one step of the least length may add as much; t up to there: z(2 s).
       CHECK(angle_after([=](double t) { return t > at ? 1.0 : 0.0; }, tolerance) ==
-            Approx(0.5 * left * left).epsilon(std::max(tolerance, 1e-8)));
+            Approx(0.5 * left * left).epsilon(std::max(tolerance, 3e-8)));
       CHECK(angle_after([=](double t) { return std::min(t, at); }, tolerance) ==
             Approx(at * at * at / 6.0 + 0.5 * at * at * left + 0.5 * at * left * left).epsilon(tolerance));
     }
@@ -344,20 +356,13 @@ TEST_CASE("The torque of a shaft far stiffer than the train turns: errors count 
 }
 
 TEST_CASE("A law that states no energy drives a train beside a weak load: what it gives was put in") {
-  // As a law of Python without energy: all of its power counts as dissipated.
-  struct Driving {
-    ScalarResponse operator()(const ScalarInput& in) const {
-      return {.y = 10.0 * in.x, .dy_dx = 10.0, .dissipated_power = 10.0 * in.x * in.x_dot};
-    }
-    static constexpr bool varies = true;
-  };
   Model m("three discs");
   for (const char* name : {"a", "b", "c"}) {
     m.add_node(name);
     m.add<Inertia>(std::string("J_") + name, {name}, {.inertia = 1.0});
   }
   m.set_initial("a", -0.1, 0.0);
-  m.add<LawElement<Driving>>("law", {"a", "b"}, Driving{});
+  m.add<LawElement<LawWithoutEnergy>>("law", {"a", "b"}, LawWithoutEnergy{});
   m.add<ShaftSpring>("shaft", {"b", "c"}, {.stiffness = 1000.0});
   m.add<Propeller>("load", {"c"}, {.rated_torque = 0.1, .rated_speed = 1.0});
   const System system = m.build();
