@@ -22,14 +22,11 @@ const TINTS = ["--c0", "--c1", "--c2", "--c4", "--quiet"];
 /// Amplitudes of an order over the speeds.
 const orderOf = (s, k) => s.amplitude.subarray(k * sweep.speeds_rpm.length, (k + 1) * sweep.speeds_rpm.length);
 
-/// The criticals in a section whose order has an amplitude there.
-const criticalsIn = (s) => sweep.criticals.filter((c) => c.section === s.name && c.amplitude !== null);
-
 /// The orders with the largest amplitudes at the speeds and the criticals, largest first.
 const chiefOrders = (s) =>
   sweep.orders
     .map((order, k) => {
-      const between = criticalsIn(s).filter((c) => c.order === order);
+      const between = s.criticals.filter((c) => c.order === order);
       return { order, k, most: Math.max(largest(orderOf(s, k)), ...between.map((c) => c.amplitude)) };
     })
     .filter(({ most }) => most > 0)
@@ -169,16 +166,15 @@ function sectionChart(parent, group, s, index) {
         rows.get(speed)[column] = value * readable.factor;
       };
       for (const peak of s.peaks) put(peak.speed_rpm, 1, peak.half_range);
-      for (const c of criticalsIn(s)) {
-        put(c.speed_rpm, 1, c.half_range);
+      for (const c of sweep.criticals) if (c.section === s.name) put(c.speed_rpm, 1, c.half_range);
+      for (const c of s.criticals)
         put(c.speed_rpm, 1 + curves.findIndex(({ order }) => order === c.order), c.amplitude);
-      }
       return { sparse: true, rows: [...rows.values()].sort((a, b) => a[0] - b[0]) };
     },
     underlay: (context, area, g) => {
       const text = new Labels(context, area);
-      const inThis = sweep.criticals.filter((c) => c.section === s.name);
-      for (const c of [...inThis].sort((a, b) => (b.own_amplitude ?? Infinity) - (a.own_amplitude ?? Infinity)).slice(0, 6)) {
+      const inThis = s.criticals.filter((c) => c.of_mode);
+      for (const c of inThis.sort((a, b) => (b.amplitude ?? Infinity) - (a.amplitude ?? Infinity)).slice(0, 6)) {
         const x = g.toDomXCoord(c.speed_rpm);
         if (x < area.x || x > area.x + area.w) continue;
         line(context, x, area.y, x, area.y + area.h, style("--line"), [2, 3]);
@@ -198,7 +194,7 @@ function showCharts() {
     make(
       "p",
       { class: "note" },
-      `Half range and the ${NAMED_ORDERS} largest orders of each section. Dotted: criticals found in it. ` +
+      `Half range and the ${NAMED_ORDERS} largest orders of each section. Dotted: its largest criticals. ` +
         "Drag to zoom, double click for all of it.",
     ),
     toolbar(group),
