@@ -256,8 +256,11 @@ function showDiagram() {
   const group = new Group([0, 1.05 * whole[1]], () => {});
   const end = 1.05 * whole[1];
   const frequencies = c.modes.map((m) => modeAt(m, whole[1]) || Math.max(...m.frequency_Hz));
-  const high = 1.15 * Math.max(...sweep.criticals.map((x) => x.frequency_Hz), frequencies[0]) || 1;
+  // Up to the highest critical; without any, the first modes, which are all that there is to see.
+  const heights = sweep.criticals.length ? sweep.criticals.map((x) => x.frequency_Hz) : frequencies.slice(0, 10);
+  const high = 1.15 * Math.max(...heights, frequencies[0]) || 1;
   const modes = c.modes.filter((_, i) => frequencies[i] > 0 && frequencies[i] < high);
+  const above = frequencies.filter((f) => f >= high).length;
   const labels = [
     ...modes.map((m) => `mode ${m.mode}`),
     ...shown.map((o) => `order ${orderText(o)}`),
@@ -277,7 +280,8 @@ function showDiagram() {
       "span",
       { class: "note" },
       "Damped natural frequencies, and the orders of the largest criticals. ● a critical, as large as its " +
-        "amplitude beside the largest. Shaded: the speeds of the sweep.",
+        "amplitude beside the largest. Shaded: the speeds of the sweep." +
+        (above ? ` Modes above ${sig(high, 3)} Hz: ${above}, in the table below.` : ""),
     ),
     colors: () => [...modes.map(() => style("--c0")), ...shown.map(() => style("--c1")), style("--ink")],
     series: (_, i) =>
