@@ -17,7 +17,7 @@ const whole = span[0] < span[1] ? span : [0.99 * span[0], 1.01 * span[1]];
 const speedOf = page.shaft === "reference shaft" ? "of the reference shaft" : `of ${page.shaft}, the reference shaft`;
 const speedAxis = `speed of ${page.shaft} [rpm]`;
 const NAMED_ORDERS = 5;
-const TINTS = ["--c0", "--c1", "--c2", "--c4", "--quiet"];
+const TINTS = ["--c0", "--c2", "--c4", "--quiet"]; // none of them the limits'
 
 /// Amplitudes of an order over the speeds.
 const orderOf = (s, k) => s.amplitude.subarray(k * sweep.speeds_rpm.length, (k + 1) * sweep.speeds_rpm.length);
