@@ -147,6 +147,9 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, name.size() / 2) + 1;
   for (const std::string& candidate : candidates) {
+    // The comparison takes the time of one length times the other: none of a name of megabytes.
+    constexpr std::size_t kLongest = 500;
+    if (std::max(name.size(), candidate.size()) > kLongest) continue;
     const std::size_t distance = edit_distance(name, candidate);
     // As many edits as letters: nothing in common.
     if (distance < best_distance && distance < std::max(name.size(), candidate.size())) {

@@ -1,5 +1,6 @@
 #include <drev/app/model_file/model_file.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -16,6 +17,21 @@
 namespace drev::app {
 
 namespace {
+
+/// A table that a spreadsheet has written in another encoding is refused here, where its place is known.
+void check_encoding(const std::string& text, const std::string& file) {
+  std::size_t at = text.find('\0');
+  if (at == text.npos) try {
+      Json(text).dump();
+      return;
+    } catch (const Json::type_error& error) {
+      const std::string said = error.what(), before = "at index ";
+      at = std::stoul(said.substr(said.find(before) + before.size()));
+    }
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  throw ModelError({{file + ":" + std::to_string(line), "", "", "",
+                     "is no text in UTF-8, such as a file in Latin-1 or UTF-16: save it as UTF-8"}});
+}
 
 /// What is written can be read: a fault of the data, a mass without inertia, is found now. Its place is the train's: the
 /// line of a file that is not written tells nobody anything.
@@ -48,6 +64,7 @@ int import_command(const CommandLine& line) {
   if (out) check_output("--out", *out, files, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
   const std::string text = read_text(file, nullptr);
+  check_encoding(text, file);
   const ImportedModel model = json ? import_opentorsion(text, file) : import_mass_elastic(text, file);
   const std::string toml = model.toml(std::filesystem::path(file).filename().string());
   check_written(toml, file);

@@ -97,8 +97,10 @@ int thread_count_of(const CommandLine& line, const Ranks& ranks) {
 void write_page(std::optional<ReportFile>& report, const CommandLine& line, const VariantStudy& study,
                 const std::string& folder, const Json& summary) {
   if (!report) return;
-  const Json data =
-      variants_report_data(study.request().model, summary, variant_points(study, folder), words_of(line));
+  VariedTexts varied;
+  for (const Varied& v : study.plan().varied()) varied[v.name] = v.text;
+  const Json data = variants_report_data(study.request().model, varied, summary,
+                                         variant_points(study, folder), words_of(line));
   report->commit(report_page({block_text(data)}, ReportPage::variants));
 }
 

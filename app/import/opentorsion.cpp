@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -146,7 +147,9 @@ class OpenTorsionReader {
       findings_.push_back(
           {file_ + ": " + place, key, found.is_null() ? "" : found.dump(),
            unit == kUnits.end() ? "" : unit->second,
-           (found.is_null() ? "is missing; it " : "") + std::string("must be a number >= ") + to_text(low)});
+           (found.is_null() ? "is missing; it " : "") + (low == std::numeric_limits<double>::min()
+                                                             ? std::string("must be a number > 0")
+                                                             : "must be a number >= " + to_text(low))});
       return 1.0;
     }
     return found.get<double>();
@@ -205,20 +208,28 @@ class OpenTorsionReader {
       node = next;
     } else if (type == "GearElement") {
       known.insert("parent");
-      const char* size = element.contains("teeth") ? "teeth" : "diameter";
-      const double radius = take(size, 0.0);
-      const std::string parent = place.substr(0, place.find('.')) + "." + element.value("parent", "");
-      if (const auto found = gears_.find(parent); found != gears_.end()) {
-        const std::string driven = new_node();
-        model_.add_element(name,
-                           "type = \"ideal_gear\", nodes = " + toml_texts({found->second.first, driven}) +
-                               ", ratio = " + toml_number(-found->second.second / radius));
-        node = driven;
-      } else if (element.contains("parent") && element["parent"].is_string() &&
-                 !element["parent"].get<std::string>().empty()) {
-        fault(place + ".parent", "names no gear before this one in its component");
+      Gear gear;
+      for (const char* size : {"teeth", "diameter"})
+        if (element.contains(size) && !element[size].is_null())
+          gear.sizes[size] = take(size, std::numeric_limits<double>::min());
+      if (gear.sizes.empty()) fault(place, "has neither teeth nor a diameter");
+      const Json parent = element.value("parent", Json());
+      if (!parent.is_null() && !parent.is_string()) {
+        fault(place + ".parent", "must be the name of a gear in quotes");
+      } else if (parent.is_string() && !parent.get<std::string>().empty()) {
+        const auto found = gears_.find(place.substr(0, place.find('.')) + "." + parent.get<std::string>());
+        if (found == gears_.end()) {
+          fault(place + ".parent", "names no gear before this one in its component");
+        } else {
+          const std::string driven = new_node();
+          model_.add_element(name,
+                             "type = \"ideal_gear\", nodes = " + toml_texts({found->second.node, driven}) +
+                                 ", ratio = " + toml_number(ratio(place, found->second, gear)));
+          node = driven;
+        }
       }
-      gears_[place] = {node, radius};
+      gear.node = node;
+      gears_[place] = gear;
       const std::string here = "node = " + toml_text(node);
       if (const double inertia = take("inertia", 0.0); inertia > 0.0)
         model_.add_element("J_" + name,
@@ -232,6 +243,21 @@ class OpenTorsionReader {
       if (!known.contains(item.key())) model_.not_taken("\"" + item.key() + "\" of " + place);
   }
 
+  struct Gear {
+    std::string node;
+    std::map<std::string, double> sizes;  ///< teeth, diameter or both
+  };
+  /// Of the speeds, driven to driving: by teeth, else by diameters, whichever both gears state.
+  double ratio(const std::string& place, const Gear& driving, const Gear& driven) {
+    for (const char* size : {"teeth", "diameter"})
+      if (driving.sizes.contains(size) && driven.sizes.contains(size))
+        return -driving.sizes.at(size) / driven.sizes.at(size);
+    if (!driving.sizes.empty() && !driven.sizes.empty())
+      fault(place, "has " + driven.sizes.begin()->first + " and its parent " + driving.sizes.begin()->first +
+                       ": a ratio takes teeth of both, or diameters of both");
+    return -1.0;
+  }
+
   void add_ground(const std::string& name, const std::string& at, double damping) {
     if (damping > 0.0)
       model_.add_element("c_" + name,
@@ -243,7 +269,7 @@ class OpenTorsionReader {
   ImportedModel model_;
   std::map<std::string, const Json*> components_;
   std::map<std::string, std::vector<std::string>> connections_;
-  std::map<std::string, std::pair<std::string, double>> gears_;  ///< node, and teeth or diameter
+  std::map<std::string, Gear> gears_;
   std::set<std::string> ends_, added_;
   std::vector<std::string> starts_;
   std::vector<Finding> findings_;
@@ -262,6 +288,8 @@ ImportedModel import_opentorsion(const std::string& text, const std::string& fil
     const std::size_t why = said.find("unexpected ");
     throw ModelError({{file + ":" + std::to_string(line), "", "", "",
                        "is no JSON" + (why == said.npos ? "" : ": " + said.substr(why))}});
+  } catch (const Json::out_of_range&) {
+    throw ModelError({{file, "", "", "", "has a number that is too large: at most 1.8e308 can be read"}});
   }
   return OpenTorsionReader(json, file).read();
 }

@@ -47,6 +47,24 @@ Json peaks_of(const LinearSweep& sweep, int number_of_section) {
   return list;
 }
 
+/// The criticals as they are in a section, whose own list names one of the sections for each, without those that are small there.
+Json criticals_in(const LinearSweep& sweep, std::size_t section) {
+  constexpr double kSmall = 1e-3;  // relative to the largest one in the section [-]
+  const auto bounded = [](double amplitude) { return std::isfinite(amplitude) ? amplitude : 0.0; };
+  double largest = 0.0;
+  for (const SweepCritical& critical : sweep.criticals)
+    largest = std::max(largest, bounded(critical.in_sections[section].amplitude));
+  Json list = Json::array();
+  for (const SweepCritical& critical : sweep.criticals)
+    if (const SweepCritical::InSection& in = critical.in_sections[section]; in.amplitude > kSmall * largest)
+      list.push_back({{"speed_rpm", number(to_rpm(in.speed))},
+                      {"order", critical.order},
+                      {"mode", critical.mode + 1},
+                      {"amplitude", number(in.amplitude)},
+                      {"of_mode", in.is_mode()}});
+  return list;
+}
+
 /// The means of a section, with 0 where they are rounding relative to the largest mean.
 Vector rounded_means(const SweepSection& section, double largest) {
   constexpr double kRounding = 1e-12;
@@ -79,6 +97,7 @@ Json sweep_data(const std::string& name, const std::vector<double>& speeds_rpm, 
                         {"amplitude", amplitudes(s)},
                         {"unbounded", std::isinf(largest_half_range(sweep, static_cast<int>(c)).value)},
                         {"peaks", peaks_of(sweep, static_cast<int>(c))},
+                        {"criticals", criticals_in(sweep, c)},
                         {"limits", std::move(drawn)}});
   }
   for (const SweepCritical& critical : sweep.criticals) criticals.push_back(critical_object(sweep, critical));

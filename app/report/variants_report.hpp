@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/base/json_values.hpp"
+#include "app/report/report_origin.hpp"
 #include "app/run/model_request.hpp"
 
 namespace drev::app {
@@ -11,7 +12,7 @@ namespace drev::app {
 /// The page's data for report_page(..., ReportPage::variants). summary: variants.json; points: rows of the
 /// table (app/variants/variant_points.hpp); words: the command that reproduces it, without the model's
 /// parameters.
-Json variants_report_data(const ModelRequest& model, const Json& summary, Json points,
-                          const std::string& words);
+Json variants_report_data(const ModelRequest& model, const VariedTexts& varied, const Json& summary,
+                          Json points, const std::string& words);
 
 }  // namespace drev::app

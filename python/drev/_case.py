@@ -172,7 +172,8 @@ else (summary["warnings"]).""",
             if options.pop(keyword, None) is not None:
                 raise TypeError(f"{keyword} is an argument of damped_modes()")
         with self._findings():
-            return Modes(_drev.modes(self._request("modes", options, "modes", _progress.told(progress))))
+            handle = _drev.modes(self._request("modes", options, "modes", _progress.told(progress)))
+        return Modes(handle, lambda: self._execute("modes", options, "modes"))
 
     @_commands.documented(
         "modes", "Eigenvalues, damping ratios, complex shapes and energies: drev.DampedModes.", _PROGRESS
@@ -180,7 +181,9 @@ else (summary["warnings"]).""",
     def damped_modes(self, *, progress=None, **options):
         with self._findings():
             request = self._request("modes", options, "damped_modes", _progress.told(progress))
-            return DampedModes(_drev.damped_modes(request))
+            handle = _drev.damped_modes(request)
+        asked = {**options, "out": None}
+        return DampedModes(handle, lambda: self._execute("modes", asked, "damped_modes", words={"--damped": [""]}))
 
     @_commands.documented(
         "sweep",
@@ -225,6 +228,9 @@ else (summary["warnings"]).""",
         jobs: number of parallel runs; default: one per processor. Other arguments: those of run(); with out=DIR each
         run writes its files to DIR/NAME=VALUE. A failed run is among the results with its error.
         """
+        for keyword in ("sample", "correlate"):
+            if options.get(keyword) is not None:
+                raise TypeError(f"{keyword} is an argument of study(), which draws from distributions")
         return Variants._compute(self, values, jobs, progress, options)
 
     def study(

@@ -1,4 +1,5 @@
 """Models made in Python. Names, keys and units are those of model files (docs/model_file.md)."""
+import difflib
 import inspect
 import warnings
 
@@ -68,7 +69,16 @@ class Model(ModelCase):
         return name
 
     def _change(self, section, name, values):
-        self._sections[section].setdefault(name, {}).update(_written(name, values))
+        entries = self._sections[section]
+        if section == "nodes" and name not in entries and not self._include:  # an included file may have it
+            near = difflib.get_close_matches(name, entries, 1)
+            self._faults.append(
+                _errors.Finding(
+                    self.name, "node", name, "", "is no node of this model" + (f"; did you mean '{near[0]}'?" if near else "")
+                )
+            )
+            return
+        entries.setdefault(name, {}).update(_written(name, values))
 
     def add_node(self, name, kind=None, **keys):
         """Adds a node; `kind`: "rotational" (default) or "translational". Returns its name.

@@ -7,8 +7,16 @@ from ._run import Stored
 class _Table:
     """The rows of a table as a DataFrame, HTML and text."""
 
+    _ask = None
+
     def _columns(self):
         raise NotImplementedError
+
+    @cached_property
+    def data(self):
+        """The object that `drev modes` prints with --json. It is computed when it is first asked for, as the modes were.
+        None: the modes are those of a drev.System, which no command computes."""
+        return self._ask and self._ask()
 
     def to_pandas(self):
         """A pandas.DataFrame with one row for each mode."""
@@ -36,11 +44,22 @@ class _Table:
         return f"<table><tr>{head}</tr>{body}</table>"
 
 
+class _Kept:
+    """What data is in another process."""
+
+    def __init__(self, data):
+        self._data = data
+
+    def __call__(self):
+        return self._data
+
+
 class Modes(_Table):
     """Undamped elastic modes K x = omega^2 M x, contacts in the state `contact`."""
 
-    def __init__(self, handle):
+    def __init__(self, handle, ask=None):
         self._handle = handle
+        self._ask = ask
         self.model = handle.model
         #: number of modes with 0 Hz, which are not among those below
         self.rigid_modes = handle.rigid_modes
@@ -52,7 +71,7 @@ class Modes(_Table):
 
     def __reduce__(self):
         names = ("model", "rigid_modes", "contact", "how", "nodes", "frequency_Hz", "error_Hz", "shapes")
-        return Modes, (Stored(self._handle, names, {}),)
+        return Modes, (Stored(self._handle, names, {}), _Kept(self.data))
 
     @cached_property
     def frequency_Hz(self):
@@ -88,8 +107,9 @@ class Modes(_Table):
 class DampedModes(_Table):
     """Damped oscillating modes of (lambda^2 M + lambda C + K) x = 0."""
 
-    def __init__(self, handle):
+    def __init__(self, handle, ask=None):
         self._handle = handle
+        self._ask = ask
         self.model = handle.model
         self.rigid_modes = handle.rigid_modes
         self.contact = handle.contact
@@ -101,7 +121,7 @@ class DampedModes(_Table):
     def __reduce__(self):
         names = ("model", "rigid_modes", "contact", "nodes", "elements", "eigenvalues", "frequency_Hz",
                  "natural_frequency_Hz", "damping_ratio", "real_eigenvalues", "shapes")
-        return DampedModes, (Stored(self._handle, names, {"energy": ("kinetic", "elastic", "dissipated")}),)
+        return DampedModes, (Stored(self._handle, names, {"energy": ("kinetic", "elastic", "dissipated")}), _Kept(self.data))
 
     @cached_property
     def eigenvalues(self):

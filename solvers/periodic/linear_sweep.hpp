@@ -113,9 +113,15 @@ struct SweepCritical {
   /// The mode's own part of that amplitude: of the motion r / |Re lambda| with its residue r, without what other modes and
   /// the quasi-static torque add. Infinite: nothing damps it.
   double own_amplitude = 0.0;
-  /// For each section the speed as `speed` is for `section`, from the pole and a parabola for the rest; where the
-  /// mode's own part is below a tenth of the amplitude, speed at which the order meets the mode. Empty: not known.
-  std::vector<double> section_speeds = {};
+  /// What speed, amplitude and own_amplitude are in each section. In those beside `section` the first two are from the pole and
+  /// a parabola for the rest; where the mode's own part is below a tenth of the amplitude, the speed is that at which the order
+  /// meets the mode. Empty: not known.
+  struct InSection {
+    double speed = 0.0, amplitude = 0.0, own_amplitude = 0.0;
+    bool is_mode() const { return own_amplitude > kOwnPart * amplitude; }
+  };
+  static constexpr double kOwnPart = 0.1;  ///< smallest own part of an amplitude whose top is the mode's [-]
+  std::vector<InSection> in_sections = {};
 };
 
 /// The elastic modes over the speeds, tracked by their shapes. One column where nothing depends on the speed.

@@ -26,7 +26,6 @@ constexpr double kSameSeed = 1e-2;      // part of a mode's half width below whi
 constexpr double kPeakSpeed = 1e-7;     // tolerance of a peak's speed relative to it [-]
 constexpr double kSameTop = 1e-6;       // relative difference of criticals' speeds that are one top [-]
 constexpr double kSameSpeed = 1e-10;    // relative difference of speeds that are one but for rounding [-]
-constexpr double kOwnPart = 0.1;        // smallest own part of an amplitude whose top is the mode's [-]
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 class Search {
@@ -153,7 +152,8 @@ class Search {
       const bool top = found.at > from + 2.0 * width && found.at < to - 2.0 * width;
       if (top) critical.speed = found.at;
       critical.amplitude = top ? found.value : amplitude(critical.speed);
-      critical.section_speeds[static_cast<std::size_t>(critical.section)] = critical.speed;
+      SweepCritical::InSection& own = critical.in_sections[static_cast<std::size_t>(critical.section)];
+      own.speed = critical.speed, own.amplitude = critical.amplitude;
       critical.half_range = one(critical.speed, static_cast<std::size_t>(critical.section));
     }
     std::stable_sort(sweep_.criticals.begin(), sweep_.criticals.end(),
@@ -298,7 +298,15 @@ class Search {
   }
   /// Of a critical at which the order meets an undamped mode: infinite, unless the loads do not excite the mode.
   void find_undamped(SweepCritical& critical, int order) {
-    critical.section = most_moved(response_.resonance(critical.speed, order).near.amplitude.row(order));
+    const LinearResponse::Resonance at = response_.resonance(critical.speed, order);
+    critical.section = most_moved(at.near.amplitude.row(order));
+    for (std::size_t c = 0; c < sweep_.sections.size(); ++c) {
+      const bool mine = at.excited && at.unbounded[c];
+      critical.in_sections.push_back(
+          {critical.speed,
+           mine ? kInfinite : std::abs(at.near.amplitude(order, static_cast<Eigen::Index>(c))),
+           mine ? kInfinite : 0.0});
+    }
     critical.half_range = critical.own_amplitude = critical.amplitude;
     if (!std::isfinite(critical.amplitude)) return;
     critical.own_amplitude = 0.0;
@@ -368,10 +376,13 @@ class Search {
         return std::abs(own[c] / (1.0 + i * x) + rest[c] + (slope[c] + bend[c] * x) * x);
       };
       constexpr double kTolerance = 1e-6;
-      const bool mine = std::abs(own[c]) > kOwnPart * std::abs(here[c]);
-      const double x = mine ? bracketed_maximum(-1.0, 0.0, 1.0, kTolerance, amplitude).at : 0.0;
-      const bool top = std::abs(x) < 1.0 - 2.0 * kTolerance;
-      critical.section_speeds.push_back(critical.speed + (top ? x * width : 0.0));
+      SweepCritical::InSection in{critical.speed, std::abs(here[c]), std::abs(own[c])};
+      if (in.is_mode()) {
+        const BracketedMaximum found = bracketed_maximum(-1.0, 0.0, 1.0, kTolerance, amplitude);
+        if (std::abs(found.at) < 1.0 - 2.0 * kTolerance)
+          in.speed += found.at * width, in.amplitude = found.value;
+      }
+      critical.in_sections.push_back(in);
     }
   }
 

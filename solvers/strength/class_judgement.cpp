@@ -181,9 +181,9 @@ class Judge {
     for (std::size_t c = 0; c < sweep_.criticals.size(); ++c) {
       const SweepCritical& critical = sweep_.criticals[c];
       // Whether the critical speed is in a range in which this section's limit is exceeded.
-      const double speed = critical.section_speeds.empty()
+      const double speed = critical.in_sections.empty()
                                ? critical.speed
-                               : critical.section_speeds[static_cast<std::size_t>(section)];
+                               : critical.in_sections[static_cast<std::size_t>(section)].speed;
       const bool inside =
           std::any_of(found.exceeded.begin(), found.exceeded.end(),
                       [speed](const auto& range) { return speed >= range.from && speed <= range.to; });

@@ -103,6 +103,20 @@ fi
 if [ "${2:-}" = --sweep ]; then
   "$drev" sweep "$3/engine/engine.toml" --speeds 600:10:2000 --report sweep.html --quiet
   probe sweep.html sweep sweep_probe.html
+  cat >chain.toml <<'END'
+format = 1
+nodes = { electric_motor_rotor = { constant_speed_rpm = 600 }, coupling_hub_motor_side = {}, gearbox_input_shaft_end = {} }
+[elements]
+hub = { type = "inertia", node = "coupling_hub_motor_side", inertia_kg_m2 = 1 }
+shaft_end = { type = "inertia", node = "gearbox_input_shaft_end", inertia_kg_m2 = 1 }
+motor_shaft = { type = "shaft_spring", nodes = ["electric_motor_rotor", "coupling_hub_motor_side"], stiffness_Nm_per_rad = 100, damping_Nms_per_rad = 1 }
+gear_shaft = { type = "shaft_spring", nodes = ["coupling_hub_motor_side", "gearbox_input_shaft_end"], stiffness_Nm_per_rad = 100, damping_Nms_per_rad = 1 }
+gas = { type = "engine_order_torque", node = "gearbox_input_shaft_end", harmonics = { order = [0.5, 1], amplitude_Nm = [1, 1] } }
+[run]
+duration_s = 1
+END
+  "$drev" sweep chain.toml --speeds 20:20:400 --report chain.html --quiet
+  probe chain.html "long names" sweep_probe.html
   "$drev" class "$3/genset/genset.toml" --speeds 1200:20:1700 --contact closed --report class.html --quiet
   probe class.html class sweep_probe.html
   "$drev" sweep "$3/gear_pair/gear_pair.toml" --speeds 1500:100:2500 --report branches.html --quiet

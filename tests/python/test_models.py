@@ -97,6 +97,15 @@ def test_every_kind_of_node_motion():
     assert o.run(duration_s=0.1).ok
 
 
+def test_a_mistyped_node_is_no_new_one():
+    m = drev.Model("train")
+    m.add_node("engine")
+    m.add_inertia("J", "engine", inertia_kg_m2=1)
+    m.set_initial("engin", angle_rad=0.1)
+    with pytest.raises(drev.ModelError, match="node = engin, is no node of this model; did you mean 'engine'"):
+        m.modes()
+
+
 def test_everything_wrong_is_said_at_once():
     m = drev.Model("bad")
     m.add_nodes("a", "b", "a")
@@ -219,7 +228,7 @@ def test_models_that_drev_has(root):
 def test_a_node_held_by_a_misspelt_name_is_a_fault():
     m = two_masses()
     m.hold("moter")
-    with pytest.raises(drev.ModelError, match="nodes.moter, is held without effect: no element is at this node"):
+    with pytest.raises(drev.ModelError, match="node = moter, is no node of this model; did you mean 'motor'"):
         m.check()
 
 

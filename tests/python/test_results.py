@@ -65,6 +65,15 @@ def test_damped_modes():
     assert damped.kinetic.sum() == pytest.approx(1.0)
 
 
+def test_modes_have_the_json_of_their_command():
+    m = two_masses(damping=0.5)
+    modes, damped = m.modes(count=1), m.damped_modes()
+    assert modes.data["kind"] == "modes" and damped.data["kind"] == "damped_modes"
+    assert modes.data["frequencies_Hz"] == list(modes.frequency_Hz)
+    assert pickle.loads(pickle.dumps(damped)).data == damped.data
+    assert m.build().modes().data is None  # which no command computes
+
+
 def test_figures_have_errors():
     run = drev.load("two_mass_backlash").run(accuracy=1e-6)
     force = run.figures["max_force_N"]

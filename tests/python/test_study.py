@@ -35,6 +35,8 @@ def test_any_number_of_threads_gives_the_same_rows():
 
 
 def test_what_is_wrong_is_a_model_error():
+    with pytest.raises(TypeError, match=r"sample is an argument of study\(\)"):
+        drev.load("gear_drive").vary({"backlash_mm": "uniform(0.1,0.2)"}, sample="lhs:5", **STEPS)
     with pytest.raises(drev.ModelError, match="needs sample"):
         drev.load("gear_drive").study({"backlash_mm": "uniform(0,1)"}, **STEPS)
     with pytest.raises(drev.ModelError, match="did you mean"):

@@ -2,6 +2,131 @@
 
 const stillness = matchMedia("(prefers-reduced-motion: reduce)");
 
+/// Curves of a mode shape over the train: one axis a line, in the order from top to bottom.
+class ShapeView {
+  constructor(model, plan, width, rowHeight, bare) {
+    const widest = Math.max(...plan.lines.map((line) => line.width));
+    const axisName = (line) =>
+      shortName(model.nodes[plan.lines[line].nodes[0]].name) + (plan.lines[line].nodes.length > 1 ? " …" : "");
+    const nameWidth = LETTER * Math.max(...plan.lines.map((_, line) => axisName(line).length));
+    const pitch = (width - (bare ? 10 : nameWidth + 36)) / Math.max(widest, 2);
+    const { x, order } = place(plan, pitch, 0);
+    // A bare view shows only the longest line.
+    if (bare && widest === 1) return this.asRow(model.nodes.length, width, rowHeight);
+    const shown = bare ? order.slice(0, 1) : [...order].reverse();
+    this.amplitude = rowHeight * 0.42;
+    const first = (line) => Math.min(...plan.lines[line].nodes.map(x));
+    const left = Math.min(...shown.map(({ line }) => first(line))) - (bare ? 4 : nameWidth + 20);
+    const right =
+      Math.max(...shown.map(({ line }) => Math.max(...plan.lines[line].nodes.map(x)))) + (bare ? 4 : 16);
+    const heights = shown.map(({ line }) =>
+      plan.lines[line].nodes.length > 1 ? rowHeight : 0.6 * rowHeight,
+    );
+    this.svg = draw("svg", {
+      viewBox: `${left} 0 ${Math.max(right - left, bare ? 20 : 240)} ${heights.reduce((a, b) => a + b, 0)}`,
+      role: "img",
+      "aria-label": "Mode shape",
+      style: bare ? "" : `width:${Math.round(Math.max(right - left, 240))}px`,
+      ...(bare ? { preserveAspectRatio: "none", width: "100%", height: rowHeight } : {}),
+    });
+    let below = 0;
+    this.rows = [];
+    const axisOf = new Map();
+    shown.forEach(({ line }, row) => {
+      const y = below + 0.5 * heights[row],
+        nodes = plan.lines[line].nodes;
+      below += heights[row];
+      axisOf.set(line, y);
+      this.svg.append(
+        draw("line", {
+          class: "axis",
+          x1: first(line) - 6,
+          y1: y,
+          x2: Math.max(...nodes.map(x)) + 6,
+          y2: y,
+          ...(bare ? { "vector-effect": "non-scaling-stroke" } : {}),
+        }),
+      );
+      if (!bare)
+        this.svg.append(
+          draw(
+            "text",
+            { x: first(line) - 12, y: y + 4, "text-anchor": "end", class: "quiet" },
+            axisName(line),
+            draw("title", {}, model.nodes[nodes[0]].name),
+          ),
+        );
+      for (const i of nodes) this.rows.push({ i, x: x(i), y, from: plan.nodes[i].from });
+    });
+    if (!bare)
+      for (const tie of plan.ties) {
+        const [a, b] = tie.nodes;
+        this.svg.append(
+          draw("line", {
+            class: "tie",
+            x1: x(a),
+            y1: axisOf.get(plan.nodes[a].line),
+            x2: x(b),
+            y2: axisOf.get(plan.nodes[b].line),
+          }),
+        );
+      }
+    const where = new Map(this.rows.map((row) => [row.i, row]));
+    this.links = this.rows.filter((row) => row.from >= 0).map((row) => [where.get(row.from), row]);
+    const path = (kind) =>
+      draw("path", { class: kind, ...(bare ? { "vector-effect": "non-scaling-stroke" } : {}) });
+    this.envelopes = [path("envelope"), path("envelope")];
+    this.curve = path("shape");
+    this.svg.append(...this.envelopes, this.curve);
+    this.dots = bare
+      ? []
+      : this.rows.map((row) =>
+          draw(
+            "circle",
+            { class: "dot", r: Math.min(3.2, 0.6 * pitch), cx: row.x },
+            draw("title", {}, model.nodes[row.i].name),
+          ),
+        );
+    this.svg.append(...this.dots);
+  }
+  /// A bare view of a train of single nodes in mesh: node after node.
+  asRow(count, width, rowHeight) {
+    this.amplitude = rowHeight * 0.42;
+    this.rows = Array.from({ length: count }, (_, i) => ({
+      i,
+      x: (width * (i + 0.5)) / count,
+      y: rowHeight / 2,
+    }));
+    this.links = this.rows.slice(1).map((row, i) => [this.rows[i], row]);
+    this.curve = draw("path", { class: "shape" });
+    this.dots = [];
+    this.svg = draw(
+      "svg",
+      { viewBox: `0 0 ${width} ${rowHeight}`, role: "img", "aria-label": "Mode shape" },
+      draw("line", { class: "axis", x1: 0, y1: rowHeight / 2, x2: width, y2: rowHeight / 2 }),
+      this.curve,
+    );
+  }
+  path(factor) {
+    const y = (row) => (row.y - this.amplitude * factor * this.shape[row.i]).toFixed(2);
+    return this.links.map(([a, b]) => `M${a.x.toFixed(1)} ${y(a)}L${b.x.toFixed(1)} ${y(b)}`).join("");
+  }
+  show(shape) {
+    this.shape = shape;
+    if (this.dots.length)
+      this.envelopes.forEach((envelope, i) => envelope.setAttribute("d", this.path(i ? -1 : 1)));
+    this.move(1);
+  }
+  /// factor: factor of the shape, 1 to -1.
+  move(factor) {
+    this.curve.setAttribute("d", this.path(factor));
+    this.dots.forEach((dot, k) => {
+      const row = this.rows[k];
+      dot.setAttribute("cy", row.y - this.amplitude * factor * this.shape[row.i]);
+    });
+  }
+}
+
 function showModes() {
   const section = byId("modes");
   const shown = distinct((r) => r.modes);

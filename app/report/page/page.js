@@ -45,7 +45,7 @@ function showInputTable(page) {
       ["parameter", "value", "unit", "default", "range", "meaning"],
       page.inputs.map((input) => {
         const row = [input.name, input.value, input.unit, input.default, input.range, input.meaning];
-        row.changed = input.value !== input.default;
+        row.changed = !input.varied && input.value !== input.default;
         return row;
       }),
     ),

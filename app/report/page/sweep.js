@@ -17,19 +17,16 @@ const whole = span[0] < span[1] ? span : [0.99 * span[0], 1.01 * span[1]];
 const speedOf = page.shaft === "reference shaft" ? "of the reference shaft" : `of ${page.shaft}, the reference shaft`;
 const speedAxis = `speed of ${page.shaft} [rpm]`;
 const NAMED_ORDERS = 5;
-const TINTS = ["--c0", "--c1", "--c2", "--c4", "--quiet"];
+const TINTS = ["--c0", "--c2", "--c4", "--quiet"]; // none of them the limits'
 
 /// Amplitudes of an order over the speeds.
 const orderOf = (s, k) => s.amplitude.subarray(k * sweep.speeds_rpm.length, (k + 1) * sweep.speeds_rpm.length);
-
-/// The criticals in a section whose order has an amplitude there.
-const criticalsIn = (s) => sweep.criticals.filter((c) => c.section === s.name && c.amplitude !== null);
 
 /// The orders with the largest amplitudes at the speeds and the criticals, largest first.
 const chiefOrders = (s) =>
   sweep.orders
     .map((order, k) => {
-      const between = criticalsIn(s).filter((c) => c.order === order);
+      const between = s.criticals.filter((c) => c.order === order);
       return { order, k, most: Math.max(largest(orderOf(s, k)), ...between.map((c) => c.amplitude)) };
     })
     .filter(({ most }) => most > 0)
@@ -169,16 +166,15 @@ function sectionChart(parent, group, s, index) {
         rows.get(speed)[column] = value * readable.factor;
       };
       for (const peak of s.peaks) put(peak.speed_rpm, 1, peak.half_range);
-      for (const c of criticalsIn(s)) {
-        put(c.speed_rpm, 1, c.half_range);
+      for (const c of sweep.criticals) if (c.section === s.name) put(c.speed_rpm, 1, c.half_range);
+      for (const c of s.criticals)
         put(c.speed_rpm, 1 + curves.findIndex(({ order }) => order === c.order), c.amplitude);
-      }
       return { sparse: true, rows: [...rows.values()].sort((a, b) => a[0] - b[0]) };
     },
     underlay: (context, area, g) => {
       const text = new Labels(context, area);
-      const inThis = sweep.criticals.filter((c) => c.section === s.name);
-      for (const c of [...inThis].sort((a, b) => (b.own_amplitude ?? Infinity) - (a.own_amplitude ?? Infinity)).slice(0, 6)) {
+      const inThis = s.criticals.filter((c) => c.of_mode);
+      for (const c of inThis.sort((a, b) => (b.amplitude ?? Infinity) - (a.amplitude ?? Infinity)).slice(0, 6)) {
         const x = g.toDomXCoord(c.speed_rpm);
         if (x < area.x || x > area.x + area.w) continue;
         line(context, x, area.y, x, area.y + area.h, style("--line"), [2, 3]);
@@ -198,7 +194,7 @@ function showCharts() {
     make(
       "p",
       { class: "note" },
-      `Half range and the ${NAMED_ORDERS} largest orders of each section. Dotted: criticals found in it. ` +
+      `Half range and the ${NAMED_ORDERS} largest orders of each section. Dotted: its largest criticals. ` +
         "Drag to zoom, double click for all of it.",
     ),
     toolbar(group),
@@ -260,8 +256,11 @@ function showDiagram() {
   const group = new Group([0, 1.05 * whole[1]], () => {});
   const end = 1.05 * whole[1];
   const frequencies = c.modes.map((m) => modeAt(m, whole[1]) || Math.max(...m.frequency_Hz));
-  const high = 1.15 * Math.max(...sweep.criticals.map((x) => x.frequency_Hz), frequencies[0]) || 1;
+  // Up to the highest critical; without any, the first modes, which are all that there is to see.
+  const heights = sweep.criticals.length ? sweep.criticals.map((x) => x.frequency_Hz) : frequencies.slice(0, 10);
+  const high = 1.15 * Math.max(...heights, frequencies[0]) || 1;
   const modes = c.modes.filter((_, i) => frequencies[i] > 0 && frequencies[i] < high);
+  const above = frequencies.filter((f) => f >= high).length;
   const labels = [
     ...modes.map((m) => `mode ${m.mode}`),
     ...shown.map((o) => `order ${orderText(o)}`),
@@ -281,7 +280,8 @@ function showDiagram() {
       "span",
       { class: "note" },
       "Damped natural frequencies, and the orders of the largest criticals. ● a critical, as large as its " +
-        "amplitude beside the largest. Shaded: the speeds of the sweep.",
+        "amplitude beside the largest. Shaded: the speeds of the sweep." +
+        (above ? ` Modes above ${sig(high, 3)} Hz: ${above}, in the table below.` : ""),
     ),
     colors: () => [...modes.map(() => style("--c0")), ...shown.map(() => style("--c1")), style("--ink")],
     series: (_, i) =>

@@ -1,4 +1,4 @@
-// The train as a schematic, and its mode shapes.
+// The train as a schematic.
 //
 // Parts that turn together about one axis (joined by anything but gears) lie on one line, the longest chain in
 // the main row, branches below. Lines in mesh touch at their gears; gears on a carrier are joined on its line.
@@ -8,6 +8,10 @@ const PITCH_LEAST = 24,
   GEAR = 52,
   THICKEST = 7; // sizes [px]; disc and gear: largest radii
 const MOST_LABELS = 60; // largest number of labels on one line
+const LETTER = 6.8; // width of a letter of a label [px]
+const TILT = (-55 * Math.PI) / 180; // of names that have no room beside each other [rad]
+/// A name as a drawing has room for it; the title of its part has all of it.
+const shortName = (name) => (name.length > 32 ? `${name.slice(0, 20)}…${name.slice(-11)}` : name);
 const coupling = (joint) => joint.kind === "gear" || (joint.kind === "mesh" && !joint.carried);
 
 function layout(model) {
@@ -188,9 +192,9 @@ function drawTrain(model) {
   const gearRadius = (tie, node) =>
     tie.radii ? Math.max(6, tie.radii[tie.nodes.indexOf(node)] * scale) : 22;
   const labelled = widest <= MOST_LABELS;
-  const shortLabels = pitch > 75;
-  const nameLength = Math.max(...model.nodes.map((node) => node.name.length));
-  const labelHeight = shortLabels || !labelled ? 18 : Math.min(90, nameLength * 5 + 6);
+  const nameWidth = labelled ? LETTER * Math.max(...model.nodes.map((node) => shortName(node.name).length)) : 0;
+  const shortLabels = nameWidth + LETTER < pitch; // names have room beside each other
+  const labelHeight = shortLabels ? 18 : nameWidth * Math.sin(-TILT) + 6;
 
   // Heights: each line is below the one it was reached from, with touching gears, or below all lines so far.
   const y = plan.lines.map(() => 0),
@@ -210,10 +214,20 @@ function drawTrain(model) {
     }
     bottom = Math.max(bottom, y[line] + half[line] + height(line));
   });
-  const top = Math.min(...plan.lines.map((_, i) => y[i] - half[i])) - 26;
-  const left = -46,
+  const grounded = new Set(
+    model.joints.filter((joint) => joint.nodes.length < 2).map((joint) => joint.nodes[0]),
+  );
+  const top =
+    Math.min(...plan.lines.map((_, i) => y[i] - half[i])) - 26 - (grounded.size && !shortLabels ? labelHeight : 0);
+  // How far a name reaches to either side of its node: tilted to one, above a spring to ground to the other.
+  const reachOf = nameWidth * (shortLabels ? 0.5 : Math.cos(TILT));
+  const besideGears = (i) => plan.lines[plan.nodes[i].line].width === 1 && plan.gears[i].length > 0;
+  const left = -Math.max(46, reachOf + 4),
     right =
-      Math.max(...model.nodes.map((_, i) => x(i)), ...plan.ties.map((tie) => x(tie.nodes[0]) + 100)) + 60;
+      Math.max(
+        ...model.nodes.map((_, i) => x(i) + (besideGears(i) ? nameWidth + 30 : reachOf)),
+        ...plan.ties.map((tie) => x(tie.nodes[0]) + 100),
+      ) + 60;
   const lowest = bottom + labelHeight + (model.joints.some((joint) => joint.nodes.length < 2) ? 14 : 4);
   const svg = draw("svg", {
     viewBox: `${left} ${top} ${right - left} ${lowest - top}`,
@@ -262,9 +276,6 @@ function drawTrain(model) {
     else if (joint.kind === "friction") svg.append(draw("g", {}, title, plates(x0, y0, x1, y1)));
     else svg.append(draw("g", {}, title, zigzag(x0, y0, x1, y1, joint.kind === "spring" ? 6 : 3)));
   }
-  const grounded = new Set(
-    model.joints.filter((joint) => joint.nodes.length < 2).map((joint) => joint.nodes[0]),
-  );
   const loaded = new Map();
   for (const load of model.loads)
     loaded.set(load.node, [...(loaded.get(load.node) || []), `${load.name}: ${load.type}`]);
@@ -321,33 +332,25 @@ function drawTrain(model) {
     svg.append(group);
     if (!labelled) return;
     const reach = Math.max(r, 4, ...plan.gears[i].map((tie) => gearRadius(tie, i)));
-    if (plan.lines[plan.nodes[i].line].width === 1 && plan.gears[i].length) {
+    const name = shortName(node.name);
+    const tilted = (anchor, tx, ty) =>
+      draw("text", { x: tx, y: ty, "text-anchor": anchor, transform: `rotate(${(180 * TILT) / Math.PI} ${tx} ${ty})` }, name);
+    const level = (y) => draw("text", { x: cx, y, "text-anchor": "middle" }, name);
+    if (besideGears(i)) {
       // next to its gears
       const side = Math.max(...plan.gears[i].map((tie) => Math.abs(offset(i, tie)))) + 12;
-      svg.append(draw("text", { x: cx + side, y: cy + (node.held ? -8 : 4) }, node.name));
+      svg.append(draw("text", { x: cx + side, y: cy + (node.held ? -8 : 4) }, name));
     } else if (grounded.has(i)) {
       // above, where a spring to ground is below
-      svg.append(
-        draw("text", { x: cx, y: cy - reach - (loaded.has(i) ? 15 : 5), "text-anchor": "middle" }, node.name),
-      );
-    } else if (shortLabels) {
-      svg.append(draw("text", { x: cx, y: cy + reach + 15, "text-anchor": "middle" }, node.name));
-    } else {
-      const ty = cy + reach + 8;
-      svg.append(
-        draw(
-          "text",
-          { x: cx + 4, y: ty, "text-anchor": "end", transform: `rotate(-55 ${cx + 4} ${ty})` },
-          node.name,
-        ),
-      );
-    }
+      const ty = cy - reach - (loaded.has(i) ? 15 : 5);
+      svg.append(shortLabels ? level(ty) : tilted("start", cx + 4, ty));
+    } else svg.append(shortLabels ? level(cy + reach + 15) : tilted("end", cx + 4, cy + reach + 8));
   });
   // Names of meshes, next to their contact where there is no name of a node.
-  const boxOf = (text, x, y) => ({ left: x - 2, right: x + 6.3 * text.length + 2, top: y - 10, bottom: y + 3 });
+  const boxOf = (text, x, y) => ({ left: x - 2, right: x + LETTER * text.length + 2, top: y - 10, bottom: y + 3 });
   const taken = [...svg.querySelectorAll("text:not([transform])")].map((label) => {
     const box = boxOf(label.textContent, Number(label.getAttribute("x")), Number(label.getAttribute("y")));
-    const shift = label.getAttribute("text-anchor") === "middle" ? 3.15 * label.textContent.length : 0;
+    const shift = label.getAttribute("text-anchor") === "middle" ? 0.5 * LETTER * label.textContent.length : 0;
     return { ...box, left: box.left - shift, right: box.right - shift };
   });
   for (const tie of plan.ties) {
@@ -376,125 +379,4 @@ function drawTrain(model) {
     );
   }
   return svg;
-}
-
-/// Curves of a mode shape over the train: one axis a line, in the order from top to bottom.
-class ShapeView {
-  constructor(model, plan, width, rowHeight, bare) {
-    const widest = Math.max(...plan.lines.map((line) => line.width));
-    const pitch = (width - (bare ? 10 : 120)) / Math.max(widest, 2);
-    const { x, order } = place(plan, pitch, 0);
-    // A bare view shows only the longest line.
-    if (bare && widest === 1) return this.asRow(model.nodes.length, width, rowHeight);
-    const shown = bare ? order.slice(0, 1) : [...order].reverse();
-    this.amplitude = rowHeight * 0.42;
-    const first = (line) => Math.min(...plan.lines[line].nodes.map(x));
-    const left = Math.min(...shown.map(({ line }) => first(line))) - (bare ? 4 : 104);
-    const right =
-      Math.max(...shown.map(({ line }) => Math.max(...plan.lines[line].nodes.map(x)))) + (bare ? 4 : 16);
-    const heights = shown.map(({ line }) =>
-      plan.lines[line].nodes.length > 1 ? rowHeight : 0.6 * rowHeight,
-    );
-    this.svg = draw("svg", {
-      viewBox: `${left} 0 ${Math.max(right - left, bare ? 20 : 240)} ${heights.reduce((a, b) => a + b, 0)}`,
-      role: "img",
-      "aria-label": "Mode shape",
-      style: bare ? "" : `width:${Math.round(Math.max(right - left, 240))}px`,
-      ...(bare ? { preserveAspectRatio: "none", width: "100%", height: rowHeight } : {}),
-    });
-    let below = 0;
-    this.rows = [];
-    const axisOf = new Map();
-    shown.forEach(({ line }, row) => {
-      const y = below + 0.5 * heights[row],
-        nodes = plan.lines[line].nodes;
-      below += heights[row];
-      axisOf.set(line, y);
-      this.svg.append(
-        draw("line", {
-          class: "axis",
-          x1: first(line) - 6,
-          y1: y,
-          x2: Math.max(...nodes.map(x)) + 6,
-          y2: y,
-          ...(bare ? { "vector-effect": "non-scaling-stroke" } : {}),
-        }),
-      );
-      if (!bare)
-        this.svg.append(
-          draw(
-            "text",
-            { x: first(line) - 12, y: y + 4, "text-anchor": "end", class: "quiet" },
-            nodes.length === 1 ? model.nodes[nodes[0]].name : `${model.nodes[nodes[0]].name} …`,
-          ),
-        );
-      for (const i of nodes) this.rows.push({ i, x: x(i), y, from: plan.nodes[i].from });
-    });
-    if (!bare)
-      for (const tie of plan.ties) {
-        const [a, b] = tie.nodes;
-        this.svg.append(
-          draw("line", {
-            class: "tie",
-            x1: x(a),
-            y1: axisOf.get(plan.nodes[a].line),
-            x2: x(b),
-            y2: axisOf.get(plan.nodes[b].line),
-          }),
-        );
-      }
-    const where = new Map(this.rows.map((row) => [row.i, row]));
-    this.links = this.rows.filter((row) => row.from >= 0).map((row) => [where.get(row.from), row]);
-    const path = (kind) =>
-      draw("path", { class: kind, ...(bare ? { "vector-effect": "non-scaling-stroke" } : {}) });
-    this.envelopes = [path("envelope"), path("envelope")];
-    this.curve = path("shape");
-    this.svg.append(...this.envelopes, this.curve);
-    this.dots = bare
-      ? []
-      : this.rows.map((row) =>
-          draw(
-            "circle",
-            { class: "dot", r: Math.min(3.2, 0.6 * pitch), cx: row.x },
-            draw("title", {}, model.nodes[row.i].name),
-          ),
-        );
-    this.svg.append(...this.dots);
-  }
-  /// A bare view of a train of single nodes in mesh: node after node.
-  asRow(count, width, rowHeight) {
-    this.amplitude = rowHeight * 0.42;
-    this.rows = Array.from({ length: count }, (_, i) => ({
-      i,
-      x: (width * (i + 0.5)) / count,
-      y: rowHeight / 2,
-    }));
-    this.links = this.rows.slice(1).map((row, i) => [this.rows[i], row]);
-    this.curve = draw("path", { class: "shape" });
-    this.dots = [];
-    this.svg = draw(
-      "svg",
-      { viewBox: `0 0 ${width} ${rowHeight}`, role: "img", "aria-label": "Mode shape" },
-      draw("line", { class: "axis", x1: 0, y1: rowHeight / 2, x2: width, y2: rowHeight / 2 }),
-      this.curve,
-    );
-  }
-  path(factor) {
-    const y = (row) => (row.y - this.amplitude * factor * this.shape[row.i]).toFixed(2);
-    return this.links.map(([a, b]) => `M${a.x.toFixed(1)} ${y(a)}L${b.x.toFixed(1)} ${y(b)}`).join("");
-  }
-  show(shape) {
-    this.shape = shape;
-    if (this.dots.length)
-      this.envelopes.forEach((envelope, i) => envelope.setAttribute("d", this.path(i ? -1 : 1)));
-    this.move(1);
-  }
-  /// factor: factor of the shape, 1 to -1.
-  move(factor) {
-    this.curve.setAttribute("d", this.path(factor));
-    this.dots.forEach((dot, k) => {
-      const row = this.rows[k];
-      dot.setAttribute("cy", row.y - this.amplitude * factor * this.shape[row.i]);
-    });
-  }
 }

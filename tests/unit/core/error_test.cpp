@@ -94,6 +94,9 @@ TEST_CASE("The nearest name is near, or none") {
   CHECK(nearest_name("windscreen_wiper", names).empty());
   CHECK(nearest_name("motor", {}).empty());
   CHECK(nearest_name("", {"ab"}).empty());
+  // Two names of a megabyte, of which a comparison would take minutes.
+  const std::string large(1'000'000, 'a');
+  CHECK(nearest_name(large, {large + "b", "motor"}).empty());
   // As many edits as letters have nothing in common.
   CHECK(nearest_name("x", {"ab", "y"}).empty());
   CHECK(nearest_name("xy", {"ab"}).empty());

@@ -196,3 +196,39 @@ TEST_CASE("Columns of a mass-elastic table that say the same, or are spelt other
   CHECK(contains(drev_command({"import", (folder / "t.json").string()}).err,
                  "t.json:3: is no JSON: unexpected"));
 }
+
+TEST_CASE(
+    "Gears of openTorsion have a ratio by what both state, and a file that is no text is said to be none",
+    "[import]") {
+  const drev::test::TemporaryFolder folder;
+  const auto outcome = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+    return drev_command({"import", (folder / name).string()});
+  };
+  const auto gears = [&](const std::string& first, const std::string& second) {
+    return outcome("g.json", R"({"components": [{"name": "A", "elements": [
+      {"name": "d", "type": "Disk", "inertia": 1}, {"name": "s", "type": "ShaftDiscrete", "stiffness": 100},
+      {"name": "g", "type": "GearElement", "inertia": 1, )" +
+                                 first + R"(},
+      {"name": "h", "type": "GearElement", "inertia": 1, )" +
+                                 second + "}]}]}");
+  };
+  CHECK(
+      contains(gears(R"("teeth": 20)", R"("diameter": 100, "parent": "g")").err,
+               "A.h: has diameter and its parent teeth: a ratio takes teeth of both, or diameters of both"));
+  CHECK(contains(gears(R"("teeth": 20, "diameter": 50)", R"("diameter": 100, "parent": "g")").out,
+                 "ratio = -0.5"));
+  CHECK(
+      contains(gears(R"("teeth": 20, "parent": null)", R"("teeth": 40, "parent": "g")").out, "ratio = -0.5"));
+  CHECK(contains(gears(R"("teeth": 20)", R"("teeth": 0, "parent": "g")").err,
+                 "A.h: teeth = 0, must be a number > 0"));
+  CHECK(contains(gears(R"("teeth": 20)", R"("teeth": 40, "parent": 3)").err,
+                 "A.h.parent: must be the name of a gear in quotes"));
+  CHECK(contains(gears(R"("teeth": 20)", R"("teeth": 1e999)").err, "g.json: has a number that is too large"));
+  for (const std::string& name : {std::string("Mot\xF6r"), std::string("M\0o\0", 4)}) {
+    const auto other =
+        outcome("t.csv", "node,inertia_kg_m2,stiffness_Nm_per_rad\n" + name + ",1,100\nb,1,\n");
+    CHECK(contains(other.err, "t.csv:2: is no text in UTF-8"));
+    CHECK(other.exit_code == 2);
+  }
+}

@@ -280,6 +280,11 @@ TEST_CASE("A study's report has its figures, points of the table, and the comman
   CHECK(data.at("result") == Json::parse(read_file(folder / "r/variants.json")));
   CHECK(contains(data.at("command").get<std::string>(),
                  "--vary 'backlash_mm=uniform(0.1,0.2)' --vary damping=case_1,case_2"));
+  // A parameter that is varied is not set, too, which drev would refuse.
+  CHECK(contains(data.at("command").get<std::string>(), "--set drive=held"));
+  CHECK_FALSE(contains(data.at("command").get<std::string>(), "--set backlash_mm"));
+  for (const Json& input : data.at("inputs"))
+    if (input.at("name") == "backlash_mm") CHECK(input.at("value") == "uniform(0.1,0.2)");
   const Json& points = data.at("points");
   CHECK(points.at("count") == 40);
   CHECK(points.at("parameters")[1].at("names") == Json{"case_1", "case_2"});

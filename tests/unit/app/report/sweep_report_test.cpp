@@ -202,3 +202,32 @@ TEST_CASE("Limits of sections stand in the report of a sweep", "[sweep][report]"
   CHECK(limits == expected);
   CHECK(limits > 2);
 }
+
+TEST_CASE("Every section of a sweep's report has its own criticals", "[sweep][report]") {
+  const drev::test::TemporaryFolder folder;
+  const std::string model = (folder / "chain.toml").string(), file = (folder / "chain.html").string();
+  std::ofstream(model) << R"(format = 1
+nodes = { motor = { constant_speed_rpm = 600 }, a = {}, b = {} }
+[elements]
+Ja = { type = "inertia", node = "a", inertia_kg_m2 = 1 }
+Jb = { type = "inertia", node = "b", inertia_kg_m2 = 1 }
+s1 = { type = "shaft_spring", nodes = ["motor", "a"], stiffness_Nm_per_rad = 100, damping_Nms_per_rad = 1 }
+s2 = { type = "shaft_spring", nodes = ["a", "b"], stiffness_Nm_per_rad = 100, damping_Nms_per_rad = 1 }
+gas = { type = "engine_order_torque", node = "b", harmonics = { order = [1], amplitude_Nm = [1] } }
+)";
+  REQUIRE(drev_command({"sweep", model, "--speeds", "20:20:400", "--report", file, "--quiet"}).exit_code ==
+          0);
+  const nlohmann::json sweep =
+      nlohmann::json::parse(drev::app::blocks_of(read_file(file)).front()).at("sweeps").at(0);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const nlohmann::json& section = sweep["sections"][s];
+    REQUIRE(section.at("criticals").size() == 2);
+    const nlohmann::json &peak = section["peaks"][0], &critical = section["criticals"][0];
+    // The one order is the half range, which no speed of the sweep has.
+    CHECK(critical.at("order") == 1.0);
+    CHECK(critical.at("of_mode") == true);
+    CHECK(critical.at("speed_rpm").get<double>() == Approx(peak.at("speed_rpm").get<double>()).epsilon(1e-4));
+    CHECK(critical.at("amplitude").get<double>() ==
+          Approx(peak.at("half_range").get<double>()).epsilon(1e-4));
+  }
+}

@@ -268,7 +268,7 @@ TEST_CASE("A critical is in the section that its mode moves, not in the one with
     if (amplitude(speed) > best) best = amplitude(speed), at = speed;
   CHECK(critical.speed == Approx(at).margin(2e-4));
   CHECK(critical.amplitude == Approx(best).epsilon(1e-6));
-  CHECK(critical.section_speeds[number] == critical.speed);
+  CHECK(critical.in_sections[number].speed == critical.speed);
 
   // The mode's residue: C = beta K, so that mode n of the undamped train with omega has lambda^2 + beta omega^2 lambda +
   // omega^2 = 0, and phi phi' p / (lambda - conj lambda) at the pole.
@@ -284,7 +284,7 @@ TEST_CASE("A critical is in the section that its mode moves, not in the one with
   CHECK(critical.damping_ratio == Approx(ratio).epsilon(1e-9));
   CHECK(critical.own_amplitude == Approx(own).epsilon(1e-9));
   // In the crank the mode's part is below a tenth of the quasi-static torque: it has no speed of its own.
-  CHECK(critical.section_speeds[1 - number] == Approx(damped / order).epsilon(1e-6));
+  CHECK(critical.in_sections[1 - number].speed == Approx(damped / order).epsilon(1e-6));
 }
 
 TEST_CASE("A mode's own part is its residue, whatever modes lie near", "[sweep_peaks]") {

@@ -117,7 +117,7 @@ TEST_CASE("Barred range by rule about a critical above the limit", "[strength]")
   // The section's own top of the order, where the critical's is another section's.
   LinearSweep other = triangle();
   other.criticals[0].section = 1, other.criticals[0].speed = 145.0;
-  other.criticals[0].section_speeds = {150.0, 145.0};
+  other.criticals[0].in_sections = {{.speed = 150.0}, {.speed = 145.0}};
   const auto own = judge_sweep(other, strength).sections.front().barred;
   REQUIRE(own.size() == 1);
   CHECK(own[0].speed == 150.0);
