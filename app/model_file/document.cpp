@@ -299,9 +299,11 @@ class DocumentReader {
     if (given == nullptr) return;
     const double number = given->number;
     if (parameter.low > parameter.high)
-      refuse(table.at, where, "has a min above its max");
+      refuse(table.at, where,
+             "has a min above its max, " + to_text(parameter.low) + " above " + to_text(parameter.high));
     else if (number < parameter.low || number > parameter.high)
-      refuse(given->at, where + ".default", to_text(number) + " is not between min and max");
+      refuse(given->at, where + ".default",
+             to_text(number) + " is not between min and max: it must be " + parameter.range());
     if (parameter.kind == Parameter::Kind::integer && number != std::floor(number))
       refuse(given->at, where + ".default", to_text(number) + " is no whole number");
   }
@@ -314,8 +316,10 @@ class DocumentReader {
       const Value& value = entry.value;
       const std::string place = where + "." + entry.key;
       if (entry.key == "choices") {
-        if (!value.is(Value::Kind::array) || value.items.empty())
+        if (!value.is(Value::Kind::array))
           refuse(value.at, place, "must be an array of texts, not " + kind_name(value));
+        else if (value.items.empty())
+          refuse(value.at, place, "must hold one text at least");
         for (const Value& item : value.items)
           if (item.is(Value::Kind::text))
             parameter.choices.push_back(item.text);
@@ -331,6 +335,7 @@ class DocumentReader {
     const Entry* given = table.find("default");
     const bool right = given != nullptr && given->value.is(Value::Kind::text) &&
                        std::count(parameter.choices.begin(), parameter.choices.end(), given->value.text) > 0;
+    if (parameter.choices.empty()) return;  // which is said
     if (!right)
       return refuse(given != nullptr ? given->value.at : table.at, where + ".default",
                     "must be one of " + parameter.range());
