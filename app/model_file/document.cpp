@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 namespace drev::app {
 
@@ -42,10 +43,12 @@ class DocumentReader {
     if (const Value* parameters = section(table, "parameters")) read_parameters(*parameters);
     if (const Value* lists = section(table, "lists")) read_lists(*lists);
     if (const Value* tables = section(table, "tables")) read_tables(*tables);
+    const std::size_t own_blocks = doc_.blocks.size();
     if (const Value* nodes = section(table, "nodes"), *elements = section(table, "elements");
         nodes != nullptr || elements != nullptr)
       doc_.blocks.push_back({nodes, elements, nullptr});
     if (const Entry* repeat = table.find("repeat")) read_repeats(repeat->value);
+    if (doc_.blocks.size() > own_blocks) with_parts_.insert(path);
     stack_.pop_back();
   }
 
@@ -199,6 +202,11 @@ class DocumentReader {
       const std::string included = file.lexically_normal().string();
       if (std::count(stack_.begin(), stack_.end(), included) > 0) {
         refuse(name->at, "include", included + " includes itself");
+        continue;
+      }
+      if (with_parts_.contains(included)) {
+        refuse(name->at, "include",
+               included + " is included twice: its nodes and elements are there already");
         continue;
       }
       if (depth >= kDeepestInclude || files_ >= kMostFiles) {
@@ -397,6 +405,7 @@ class DocumentReader {
   Document& doc_;
   std::map<std::string, Value> parameters_;  // as tables
   std::vector<std::string> stack_;
+  std::set<std::string> with_parts_;  // files read that have nodes or elements
   int files_ = 0;
 };
 

@@ -288,6 +288,23 @@ TEST_CASE("Faults of files that are included or read are named in those") {
   CHECK(contains(run.err, "5 faults"));
 }
 
+TEST_CASE("A file with nodes or elements that is included twice is one fault") {
+  const test::TemporaryFolder folder;
+  const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder / name) << text; };
+  write("units.toml", "format = 1\n[parameters]\np = 2\n");
+  write("base.toml",
+        "format = 1\ninclude = \"units.toml\"\n[nodes]\na = {}\n[elements]\n"
+        "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = \"p\" }\n");
+  write("s.toml", "format = 1\ninclude = [\"base.toml\", \"units.toml\"]\n");
+  CHECK(test::drev_command({"check", (folder / "s.toml").string()}).exit_code == 0);
+  write("m.toml", "format = 1\ninclude = [\"s.toml\", \"base.toml\"]\n");
+  const auto run = test::drev_command({"check", (folder / "m.toml").string()});
+  INFO(run.err);
+  CHECK(contains(run.err, "m.toml:2:22: include, "));
+  CHECK(contains(run.err, "base.toml is included twice"));
+  CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+}
+
 TEST_CASE("Nothing of a file that is no table is printed") {
   const test::TemporaryFolder folder;
   const auto check_with =
