@@ -83,6 +83,10 @@ const std::vector<Fault>& faults() {
       {"gear = {}", "gear = { run_up = { speed_0_rpm = 0, speed_1_rpm = 100, time_0_s = 2, @time_1_s = 1 } }",
        "time_1 = 1 s, must be greater than time_0"},
       {"\"unit_{i}\" = {}", "\"unit_{i}\" = {}\n@unit_2 = {}", "the name unit_2 is used twice; first in"},
+      {"count = \"cylinders\"", "count = \"cylinders\"\ncounter = @\"pi\"",
+       "no parameter and not pi, not the text \"pi\""},
+      {"backlash_mm = 0.15\n", "backlash_mm = 0.15\ni = 5\n",
+       "repeat.counter, must be given: without it i counts"},
       // elements
       {"J_gear = { type = \"inertia\"", "J_gear = { type = @\"inertai\"", "did you mean 'inertia'?"},
       {"J_gear = { type = \"inertia\", ", "J_gear = @{ ", "lacks type: inertia, shaft_spring"},
