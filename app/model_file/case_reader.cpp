@@ -388,13 +388,13 @@ class CaseReader {
         left_out_.elements.insert(name);
   }
 
-  /// What has not been said when the file was read: of stand-ins, of nodes that are none.
+  /// What has not been said when the file was read: of stand-ins, of nodes that are none, of names with control characters.
   void take_findings(const ModelError& error) {
     std::vector<Finding> fresh;
     for (const Finding& finding : error.findings()) {
       const bool no_node = finding.parameter.starts_with("node ") && !nodes_.contains(finding.value);
       if (finding.parameter != RefusedElement::kRefused && !name_in(finding).starts_with(kStandIn) &&
-          !no_node)
+          !no_node && !has_control_characters(finding.value))
         fresh.push_back(finding);
     }
     leave_out(error);

@@ -216,7 +216,7 @@ class DocumentReader {
         continue;
       }
       try {
-        read(parse_toml(read_text(included, &name->at), included), included, depth + 1);
+        read(parse_toml(read_text(included, &name->at), included, &doc_.findings), included, depth + 1);
       } catch (const ModelError& error) {
         doc_.findings.insert(doc_.findings.end(), error.findings().begin(), error.findings().end());
       }
@@ -422,7 +422,7 @@ std::vector<std::string> Document::run_names() const {
 Document read_document(const std::string& text, const std::string& path) {
   Document document;
   const std::string normal = std::filesystem::path(path).lexically_normal().string();
-  Value root = parse_toml(text, normal);
+  Value root = parse_toml(text, normal, &document.findings);
   document.at = root.at;
   document.name = std::filesystem::path(path).stem().string();
   DocumentReader(document).read(std::move(root), normal, 0);

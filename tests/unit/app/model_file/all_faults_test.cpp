@@ -77,6 +77,14 @@ TEST_CASE("What cannot be read of a node or element is not missed elsewhere") {
       {"elements.J_b.node"});
 }
 
+TEST_CASE("A control character in one name hides no other fault, and is said once") {
+  require_faults(
+      "format = 1\n[nodes]\n\"a*\" = {}\n\"b\\nc\" = {}\n[elements]\n"
+      "J = { type = \"inertia\", node = \"a*\", inertia_kg_m2 = 1 }\n"
+      "K = { type = \"inertia\", node = \"b\\nc\", inertia_kg_m2 = 1 }\n",
+      {"m.toml:3:1: m: node name = a*, must be", "m.toml:4:1: nodes, has a control character"});
+}
+
 TEST_CASE("A fault of the train hides none of [run] and [class]") {
   const std::string rest =
       "[run]\nrecord = [\"x.angle_rad\", \"a.angle_rad\", \"s.torque_Nm\"]\ndeflection = "
