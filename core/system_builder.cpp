@@ -142,9 +142,13 @@ void SystemBuilder::find_nominal_motion() {
     for (const double t : times) {
       const double nominal = system_.ratio(node) * system_.reference_->at(t).rate;
       if (std::abs(nominal - *p.omega) <= kSpeedTolerance * std::abs(*p.omega)) continue;
+      const bool apart = component_[idx(node)] != component_[idx(reference_node_)];
       findings_.push_back({place(node_name(node)), "omega", to_text(*p.omega), "rad/s",
-                           "but the reference shaft turns this node at " + to_text(nominal) +
-                               " rad/s at t = " + to_text(t) + " s"});
+                           apart ? "but nothing connects this node with the reference shaft, at " +
+                                       node_name(reference_node_) +
+                                       ", from which its nominal speed would follow"
+                                 : "but the reference shaft turns this node at " + to_text(nominal) +
+                                       " rad/s at t = " + to_text(t) + " s"});
       break;
     }
   }

@@ -83,11 +83,18 @@ void PeriodicTable::check(ParameterCheck& check, const std::string& parameter,
   check.positive(parameter + ".period", period_, argument_unit);
   check.increasing(parameter + ".arguments", arguments(), argument_unit);
   check.all_finite(parameter + ".values", values(), value_unit);
-  if (n >= 2 && !(arguments()[n - 1] - arguments()[0] < period_))
-    check.fail(parameter + ".arguments", to_text(arguments()[n - 1] - arguments()[0]), argument_unit,
-               "from first to last must be less than the period, " + to_text(period_) +
-                   (n == 2 ? "; of these two points one repeats the other, give one between"
-                           : "; leave out the point that repeats the first one"));
+  const double span = n < 2 ? 0.0 : arguments()[n - 1] - arguments()[0];
+  if (n < 2 || span < period_) return;
+  std::string hint;
+  if (std::abs(span - period_) <= 1e-12 * period_ && values().size() == n)
+    hint =
+        values()[n - 1] != values()[0]
+            ? "; the last point stands where the first one does, with another value: such a curve cannot jump"
+        : n == 2 ? "; of these two points one repeats the other, give one between"
+                 : "; leave out the point that repeats the first one";
+  check.fail(parameter + ".arguments", to_text(span), argument_unit,
+             "from first to last must be less than the period, " + to_text(period_) +
+                 (argument_unit.empty() ? "" : " " + argument_unit) + hint);
 }
 
 }  // namespace drev

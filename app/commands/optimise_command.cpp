@@ -205,9 +205,12 @@ std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) 
   if (optimum.interrupted) text += labelled("interrupted", "this is the best so far");
   if (optimum.order.empty()) return text + labelled("optimum", "none: no variant succeeded");
   const TriedVariant& best = optimum.tried[optimum.order[0]];
+  const bool all_equal =
+      optimum.order.size() > 1 && best.figure == optimum.tried[optimum.order.back()].figure;
   text += labelled((request.options.largest ? "largest " : "least ") + figure.name,
                    digits(best.figure, 8) + unit) +
-          labelled("at", values_text(best.values)) +
+          labelled("at", all_equal ? "any: all " + std::to_string(optimum.order.size()) + " have this figure"
+                                   : values_text(best.values)) +
           labelled("certain", certainty_text(optimum, request.options.largest)) + "\nThe best variants\n";
   std::vector<std::vector<std::string>> rows{{"parameters", figure.name + in_head}};
   for (std::size_t i = 0; i < std::min(kTold, optimum.order.size()); ++i) {

@@ -39,17 +39,19 @@ void refuse_entry(ReadContext& context, const Position& at, const std::string& w
 void BlockEntries::for_each(const Block& block, const Value& table, const Use& use) {
   int first = 1, count = 1;
   std::string counter = "i";
+  const std::map<std::string, double> outside = context_.scope.numbers;
   if (block.repeat != nullptr) {
     // What is wrong with them is said once.
     const std::size_t before = context_.findings.size();
     const bool said = !seen_.insert(&block).second;
-    if (const Entry* e = block.repeat->find("counter")) {
-      if (e->value.is(Value::Kind::text) && !context_.scope.numbers.contains(e->value.text))
-        counter = e->value.text;
-      else
-        refuse_entry(context_, e->value.at, "repeat.counter",
-                     "must be a name that is no parameter, not " + kind_name(e->value));
-    }
+    const Entry* named = block.repeat->find("counter");
+    if (named != nullptr) counter = named->value.text;
+    if (counter.empty() || counter == "pi" || outside.contains(counter) ||
+        context_.scope.texts.contains(counter))
+      refuse_entry(context_, named != nullptr ? named->value.at : block.repeat->at, "repeat.counter",
+                   named != nullptr
+                       ? "must be a name that is no parameter and not pi, not " + kind_name(named->value)
+                       : "must be given: without it i counts, which is a parameter here");
     if (const Entry* e = block.repeat->find("first"))
       first = read_whole(e->value, -kMostRepeats, kMostRepeats, "repeat.first", context_).value_or(1);
     if (const Entry* e = block.repeat->find("count"))
@@ -82,7 +84,7 @@ void BlockEntries::for_each(const Block& block, const Value& table, const Use& u
       }
     }
   }
-  if (block.repeat != nullptr) context_.scope.numbers.erase(counter);
+  context_.scope.numbers = outside;
 }
 
 /// Whether the condition of a node or element holds. One that is wrong is a finding, and holds.
@@ -386,13 +388,13 @@ class CaseReader {
         left_out_.elements.insert(name);
   }
 
-  /// What has not been said when the file was read: of stand-ins, of nodes that are none.
+  /// What has not been said when the file was read: of stand-ins, of nodes that are none, of names with control characters.
   void take_findings(const ModelError& error) {
     std::vector<Finding> fresh;
     for (const Finding& finding : error.findings()) {
       const bool no_node = finding.parameter.starts_with("node ") && !nodes_.contains(finding.value);
       if (finding.parameter != RefusedElement::kRefused && !name_in(finding).starts_with(kStandIn) &&
-          !no_node)
+          !no_node && !has_control_characters(finding.value))
         fresh.push_back(finding);
     }
     leave_out(error);

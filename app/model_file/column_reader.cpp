@@ -132,6 +132,9 @@ class ColumnReader {
   void same_length() {
     const Column& first = columns_.front();
     if (first.values->empty() && context_.findings.size() != before_) return;  // it is what has a fault
+    if (std::all_of(columns_.begin(), columns_.end(), [](const Column& c) { return c.values->empty(); }))
+      context_.findings.push_back(
+          fault_at(source_.at, where_, "holds no numbers; leave it out, or give some"));
     for (const Column& column : columns_)
       if (!column.values->empty() && column.values->size() != first.values->size())
         context_.findings.push_back(fault_at(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 namespace drev::app {
 
@@ -42,10 +43,12 @@ class DocumentReader {
     if (const Value* parameters = section(table, "parameters")) read_parameters(*parameters);
     if (const Value* lists = section(table, "lists")) read_lists(*lists);
     if (const Value* tables = section(table, "tables")) read_tables(*tables);
+    const std::size_t own_blocks = doc_.blocks.size();
     if (const Value* nodes = section(table, "nodes"), *elements = section(table, "elements");
         nodes != nullptr || elements != nullptr)
       doc_.blocks.push_back({nodes, elements, nullptr});
     if (const Entry* repeat = table.find("repeat")) read_repeats(repeat->value);
+    if (doc_.blocks.size() > own_blocks) with_parts_.insert(path);
     stack_.pop_back();
   }
 
@@ -201,6 +204,11 @@ class DocumentReader {
         refuse(name->at, "include", included + " includes itself");
         continue;
       }
+      if (with_parts_.contains(included)) {
+        refuse(name->at, "include",
+               included + " is included twice: its nodes and elements are there already");
+        continue;
+      }
       if (depth >= kDeepestInclude || files_ >= kMostFiles) {
         refuse(name->at, "include",
                "at most " + std::to_string(kMostFiles) + " files, " + std::to_string(kDeepestInclude) +
@@ -208,7 +216,7 @@ class DocumentReader {
         continue;
       }
       try {
-        read(parse_toml(read_text(included, &name->at), included), included, depth + 1);
+        read(parse_toml(read_text(included, &name->at), included, &doc_.findings), included, depth + 1);
       } catch (const ModelError& error) {
         doc_.findings.insert(doc_.findings.end(), error.findings().begin(), error.findings().end());
       }
@@ -299,9 +307,11 @@ class DocumentReader {
     if (given == nullptr) return;
     const double number = given->number;
     if (parameter.low > parameter.high)
-      refuse(table.at, where, "has a min above its max");
+      refuse(table.at, where,
+             "has a min above its max, " + to_text(parameter.low) + " above " + to_text(parameter.high));
     else if (number < parameter.low || number > parameter.high)
-      refuse(given->at, where + ".default", to_text(number) + " is not between min and max");
+      refuse(given->at, where + ".default",
+             to_text(number) + " is not between min and max: it must be " + parameter.range());
     if (parameter.kind == Parameter::Kind::integer && number != std::floor(number))
       refuse(given->at, where + ".default", to_text(number) + " is no whole number");
   }
@@ -314,8 +324,10 @@ class DocumentReader {
       const Value& value = entry.value;
       const std::string place = where + "." + entry.key;
       if (entry.key == "choices") {
-        if (!value.is(Value::Kind::array) || value.items.empty())
+        if (!value.is(Value::Kind::array))
           refuse(value.at, place, "must be an array of texts, not " + kind_name(value));
+        else if (value.items.empty())
+          refuse(value.at, place, "must hold one text at least");
         for (const Value& item : value.items)
           if (item.is(Value::Kind::text))
             parameter.choices.push_back(item.text);
@@ -331,6 +343,7 @@ class DocumentReader {
     const Entry* given = table.find("default");
     const bool right = given != nullptr && given->value.is(Value::Kind::text) &&
                        std::count(parameter.choices.begin(), parameter.choices.end(), given->value.text) > 0;
+    if (parameter.choices.empty()) return;  // which is said
     if (!right)
       return refuse(given != nullptr ? given->value.at : table.at, where + ".default",
                     "must be one of " + parameter.range());
@@ -392,6 +405,7 @@ class DocumentReader {
   Document& doc_;
   std::map<std::string, Value> parameters_;  // as tables
   std::vector<std::string> stack_;
+  std::set<std::string> with_parts_;  // files read that have nodes or elements
   int files_ = 0;
 };
 
@@ -408,7 +422,7 @@ std::vector<std::string> Document::run_names() const {
 Document read_document(const std::string& text, const std::string& path) {
   Document document;
   const std::string normal = std::filesystem::path(path).lexically_normal().string();
-  Value root = parse_toml(text, normal);
+  Value root = parse_toml(text, normal, &document.findings);
   document.at = root.at;
   document.name = std::filesystem::path(path).stem().string();
   DocumentReader(document).read(std::move(root), normal, 0);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 namespace drev::app {
@@ -18,6 +19,7 @@ constexpr std::size_t kLongest = 1000;
 
 bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
+bool goes_on(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }  // a character of UTF-8
 
 /// What a number that a formula's variables have entered is not: known before they are.
 std::optional<double> constant(double x) { return x; }
@@ -111,11 +113,20 @@ class Parser {
 
  private:
   [[noreturn]] void fail(const std::string& why) const {
-    throw ExpressionError{"the expression \"" + text_.substr(0, 80) + "\" " + why};
+    std::size_t shown = std::min<std::size_t>(text_.size(), 80);
+    while (shown < text_.size() && goes_on(text_[shown])) --shown;
+    throw ExpressionError{"the expression \"" + text_.substr(0, shown) + "\" " + why};
+  }
+  /// " in column 3", counted in characters.
+  std::string column(std::size_t i) const {
+    const auto begin = text_.begin(), end = begin + static_cast<std::ptrdiff_t>(i);
+    return " in column " + std::to_string(std::count_if(begin, end, std::not_fn(goes_on)) + 1);
   }
   [[noreturn]] void unexpected() {
     if (at_end()) fail("ends where a number or a name is expected");
-    fail("has '" + text_.substr(i_, 1) + "' in column " + std::to_string(i_ + 1) + ", where it cannot stand");
+    std::size_t end = i_ + 1;
+    while (end < text_.size() && goes_on(text_[end])) ++end;
+    fail("has '" + text_.substr(i_, end - i_) + "'" + column(i_) + ", where it cannot stand");
   }
   bool at_end() {
     while (i_ < text_.size() && text_[i_] == ' ') ++i_;
@@ -278,8 +289,8 @@ class Parser {
     double value = 0.0;
     const auto result = std::from_chars(text_.data() + i_, text_.data() + text_.size(), value);
     if (result.ec == std::errc::result_out_of_range)
-      fail("has the number " + std::string(text_.data() + i_, result.ptr) + " in column " +
-           std::to_string(i_ + 1) + ", which is outside of what a number can be, 1e-307 to 1e308");
+      fail("has the number " + std::string(text_.data() + i_, result.ptr) + column(i_) +
+           ", which is outside of what a number can be, 1e-307 to 1e308");
     if (result.ec != std::errc{}) unexpected();
     i_ = static_cast<std::size_t>(result.ptr - text_.data());
     return value;
@@ -319,10 +330,8 @@ class Parser {
     if (scope_.lists.contains(name)) fail("needs a place in the list " + name + ", such as " + name + "[1]");
     std::vector<std::string> names = scope_.names();
     for (const auto& [variable, value] : variables_) names.push_back(variable);
-    const std::string column =
-        variables_.empty() ? "" : ", in column " + std::to_string(i_ - name.size() + 1);
-    fail("names " + name + column + ", which is no " + (variables_.empty() ? "" : "variable and no ") +
-         "parameter" + did_you_mean(name, names));
+    fail("names " + name + (variables_.empty() ? "" : "," + column(i_ - name.size())) + ", which is no " +
+         (variables_.empty() ? "" : "variable and no ") + "parameter" + did_you_mean(name, names));
   }
   Value function(const std::string& name) {
     static const std::vector<std::string> known{"sqrt", "abs",  "exp", "log", "sin", "cos",   "tan",

@@ -174,12 +174,17 @@ class FieldReader final : public Fields {
   }
   void fault(const std::string& sentence) override {
     // What is missing may be what another finding has refused.
-    if (!refused_ && context_.findings.size() == before_)
-      context_.findings.push_back(fault_at(table_.at, where_, sentence));
+    if (follows_from_none()) context_.findings.push_back(fault_at(table_.at, where_, sentence));
+  }
+  void without_effect(const std::string& name, const std::string& why) override {
+    const Found* found = keys_.find(name);
+    if (found == nullptr || !follows_from_none()) return;
+    blame(*found, "has no effect: " + why);
+    ++without_effect_;
   }
 
   void refused(const ModelError& error) override {
-    if (refused_ || context_.findings.size() > before_) return;
+    if (!follows_from_none()) return;
     const Part part{table_.at, places()};
     for (const Finding& finding : error.findings())
       context_.findings.push_back(placed(finding, part, where_));
@@ -202,6 +207,10 @@ class FieldReader final : public Fields {
       return found.entry->key + " = \"" + value.text + "\"";
     return {};
   }
+  /// Whether nothing else of this table has been refused, from which another fault may follow.
+  bool follows_from_none() const {
+    return !refused_ && context_.findings.size() == before_ + without_effect_;
+  }
   std::string place(const Found& found) const { return where_ + "." + found.entry->key; }
   void blame(const Found& found, const std::string& sentence) {
     context_.findings.push_back(fault_at(found.entry->value.at, place(found), sentence));
@@ -210,7 +219,8 @@ class FieldReader final : public Fields {
   const Value& table_;
   const std::string& where_;
   ReadContext& context_;
-  std::size_t before_;  ///< findings when this reader began
+  std::size_t before_;              ///< findings when this reader began
+  std::size_t without_effect_ = 0;  ///< of its own findings
   KeyFinder keys_;
   FieldPlaces inside_;    ///< of fields of tables inside this one: "geometry.gear_1.teeth"
   bool refused_ = false;  ///< by a finding of an earlier table

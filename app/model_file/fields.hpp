@@ -80,6 +80,8 @@ class Fields {
                     const std::function<void(Fields&, std::size_t)>& list) = 0;
   /// What is wrong with the table as a whole.
   virtual void fault(const std::string& sentence) = 0;
+  /// A key that is given, although it has no effect beside the others: `why` says so.
+  virtual void without_effect(const std::string& /*name*/, const std::string& /*why*/) {}
   /// What a computation from fields refused.
   virtual void refused(const ModelError& error) = 0;
   /// Calls make(); what it throws has been refused.

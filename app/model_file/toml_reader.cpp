@@ -133,7 +133,7 @@ void check_characters(const Value& value, const std::string& where, std::vector<
 
 }  // namespace
 
-Value parse_toml(const std::string& text, const std::string& name) {
+Value parse_toml(const std::string& text, const std::string& name, std::vector<Finding>* controls) {
   const auto file = std::make_shared<const std::string>(name);
   if (text.size() > kLargestFile)
     throw ModelError(
@@ -147,7 +147,10 @@ Value parse_toml(const std::string& text, const std::string& name) {
     Value root = convert(table, file);
     std::vector<Finding> findings;
     check_characters(root, "", findings);
-    if (!findings.empty()) throw ModelError(std::move(findings));
+    if (controls != nullptr)
+      controls->insert(controls->end(), findings.begin(), findings.end());
+    else if (!findings.empty())
+      throw ModelError(std::move(findings));
     return root;
   } catch (const toml::parse_error& error) {
     throw ModelError(

@@ -27,6 +27,7 @@ void list_firing(Fields& f, EngineCylinders::Params& p) {
     f.number({"first_firing", D::angle}, first);
     const bool columns = f.columns("firing", {{angle, &p.firing_angles}});
     if (columns == !order.empty()) f.fault("needs exactly one of firing_order and firing");
+    if (columns) f.without_effect("first_firing", "firing gives the angle of each cylinder");
     if (order.empty() || columns) return;
     if (EngineCylinders::why_no_order(order).empty()) {
       p.firing_angles = EngineCylinders::even_firing(order, p.strokes, first);
@@ -40,29 +41,37 @@ void list_firing(Fields& f, EngineCylinders::Params& p) {
   }
 }
 
-void list_gas(Fields& f, GasPressure::Params& p) {
+/// The curves of pressure and what belongs to them.
+void list_curves(Fields& f, GasPressure::Params& p, double& crankcase) {
   const Quantity pressure("pressure", D::pressure), speed("speed", D::angular_speed);
-  if (f.reading() || !p.angle.empty()) {
-    std::vector<double> at_speed = p.speed, at_load = p.load;
-    const bool given = f.columns("pressure", {{{"angle", D::angle}, &p.angle},
-                                              {pressure, &p.pressure},
-                                              {speed, &at_speed, Need::optional},
-                                              {{"load", D::none}, &at_load, Need::optional}});
-    const auto several = [](const std::vector<double>& all) {
-      for (const double value : all)
-        if (value != all.front()) return true;
-      return false;
-    };
-    if (given) p.speed = several(at_speed) ? at_speed : std::vector<double>{};
-    if (given) p.load = several(at_load) ? at_load : std::vector<double>{};
-  }
-  f.number({"load", D::none}, p.at_load);
+  std::vector<double> at_speed = p.speed, at_load = p.load;
+  const bool given = f.columns("pressure", {{{"angle", D::angle}, &p.angle},
+                                            {pressure, &p.pressure},
+                                            {speed, &at_speed, Need::optional},
+                                            {{"load", D::none}, &at_load, Need::optional}});
+  const auto several = [](const std::vector<double>& all) {
+    for (const double value : all)
+      if (value != all.front()) return true;
+    return false;
+  };
+  if (given) p.speed = several(at_speed) ? at_speed : std::vector<double>{};
+  if (given) p.load = several(at_load) ? at_load : std::vector<double>{};
+  if (f.reading() || !p.load.empty()) f.number({"load", D::none}, p.at_load);
   f.number({"firing_tdc", D::angle}, p.firing_tdc);
   list_interpolation(f, p.interpolation);
-  if (f.reading() || !p.peak_speed.empty())
+  if (f.reading() || !p.peak_speed.empty()) {
     f.columns("peak_pressure", {{speed, &p.peak_speed}, {pressure, &p.peak_pressure}});
-  f.number({"reference_pressure", D::pressure}, p.reference_pressure);
-  list_gate(f, p.firing);
+    f.number({"reference_pressure", D::pressure}, p.reference_pressure);
+  }
+  f.number({"crankcase_pressure", D::pressure}, crankcase);
+  if (given) {
+    if (p.load.empty()) f.without_effect("load", "pressure has no curves of several loads");
+    if (p.peak_speed.empty()) f.without_effect("reference_pressure", "it belongs to peak_pressure");
+    return;
+  }
+  for (const char* name :
+       {"load", "firing_tdc", "interpolation", "peak_pressure", "reference_pressure", "crankcase_pressure"})
+    f.without_effect(name, "it belongs to pressure, which is not given");
 }
 
 }  // namespace
@@ -77,8 +86,8 @@ void list(Fields& f, EngineCylinders::Params& p) {
   f.flag("varying_inertia", p.varying_inertia);
   f.whole("strokes", p.strokes);
   list_firing(f, p);
-  list_gas(f, p.gas);
-  f.number({"crankcase_pressure", D::pressure}, p.crankcase_pressure);
+  if (f.reading() || !p.gas.angle.empty()) list_curves(f, p.gas, p.crankcase_pressure);
+  list_gate(f, p.gas.firing);
   list_harmonics(f, "tangential_pressure", {"order", D::none}, {"amplitude", D::pressure},
                  p.tangential_pressure);
   f.number({"mean_tangential_pressure", D::pressure}, p.mean_tangential_pressure);

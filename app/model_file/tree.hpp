@@ -41,9 +41,9 @@ std::string kind_name(const Value& value);
 Finding fault_at(const Position& at, const std::string& where, const std::string& sentence);
 
 /// Reads TOML. Throws ModelError with one finding (the language's faults come one at a time), or with those of
-/// control characters in names and texts; also for a text
-/// above kLargestFile bytes, and for tables nested deeper than kDeepest.
-Value parse_toml(const std::string& text, const std::string& name);
+/// control characters in names and texts, which go to `controls` instead where that is given; also for a text above
+/// kLargestFile bytes, and for tables nested deeper than kDeepest.
+Value parse_toml(const std::string& text, const std::string& name, std::vector<Finding>* controls = nullptr);
 
 inline constexpr std::size_t kLargestFile = std::size_t{1} << 24;
 inline constexpr int kDeepest = 32;

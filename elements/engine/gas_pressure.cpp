@@ -42,8 +42,8 @@ GasPressure::GasPressure(Params params, double period) : params_(std::move(param
     values.push_back(parameter.empty() ? 0.0 : parameter[begin]);
   }
   curves_ = CurveFamily(std::move(curves), std::move(values));
-  reference_ = p.reference_pressure > 0.0 ? p.reference_pressure
-                                          : *std::max_element(p.pressure.begin(), p.pressure.end());
+  reference_ = std::isnan(p.reference_pressure) ? *std::max_element(p.pressure.begin(), p.pressure.end())
+                                                : p.reference_pressure;
   bends_ = p.peak_speed;
   if (!p.speed.empty()) bends_.insert(bends_.end(), curves_.parameters().begin(), curves_.parameters().end());
   const SpeedGate& gate = p.firing;
@@ -235,13 +235,14 @@ void GasPressure::check(ParameterCheck& check) const {
     }
   check.finite("firing_tdc", p.firing_tdc, "rad");
   check.finite("load", p.at_load, "");
-  check.non_negative("reference_pressure", p.reference_pressure, "Pa");
+  if (!std::isnan(p.reference_pressure)) check.positive("reference_pressure", p.reference_pressure, "Pa");
   p.firing.check(check);
   if (sizes_fit_ && !curves_.curves().empty()) {
     check.increasing(p.speed.empty() ? "pressure.load" : "pressure.speed", curves_.parameters(), "");
     for (const PeriodicCurve& curve : curves_.curves()) curve.check(check, "pressure", "rad", "Pa");
-    if (!(reference_ > 0.0))
-      check.fail("pressure", to_text(reference_), "Pa", "the largest pressure must be > 0");
+    if (!p.peak_speed.empty() && std::isnan(p.reference_pressure) && !(reference_ > 0.0))
+      check.fail("pressure", to_text(reference_), "Pa",
+                 "the largest pressure must be > 0: it is the reference of peak_pressure");
   }
   check.increasing("peak_pressure.speed", p.peak_speed, "rad/s");
   check.all_finite("peak_pressure.pressure", p.peak_pressure, "Pa");

@@ -13,6 +13,7 @@
 /// that an engine that is cranked fires from a speed on, and one whose governor cuts the fuel stops firing above another.
 #include <drev/core/law/law_piece.hpp>
 #include <drev/elements/curve.hpp>
+#include <drev/elements/not_given.hpp>
 #include <drev/elements/periodic_curve.hpp>
 
 #include <vector>
@@ -29,8 +30,8 @@ class GasPressure {
     std::vector<double> load = {};   ///< of each point [-], instead of speeds; empty: one curve for all
     double at_load = 1.0;            ///< load that the curves are taken at
     std::vector<double> peak_speed = {}, peak_pressure = {};  ///< [rad/s], [Pa]; constant beyond the ends
-    double reference_pressure = 0.0;  ///< of the peaks [Pa]; 0: the largest of the curve
-    double firing_tdc = 0.0;          ///< angle of the table at the firing top dead centre [rad]
+    double reference_pressure = kNotGiven;  ///< of the peaks [Pa], > 0; not given: the largest of the curve
+    double firing_tdc = 0.0;                ///< angle of the table at the firing top dead centre [rad]
     Interpolation interpolation = Interpolation::linear;
     SpeedGate firing = {};  ///< where it fires; elsewhere its cylinders only compress
   };

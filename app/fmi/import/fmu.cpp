@@ -41,15 +41,21 @@ std::string fault_of(const FmuDescription& fmu, const std::string& name, const c
   return {};
 }
 
-/// What is wrong with a value for a parameter of that type, which no rounding may change; empty: nothing.
-std::string fault_of_value(Type type, double value) {
+/// What is wrong with a value for a parameter, which no rounding may change; empty: nothing.
+std::string fault_of_value(const ImportedVariable& v, double value) {
   constexpr Range kInteger{std::numeric_limits<std::int32_t>::min(),
                            std::numeric_limits<std::int32_t>::max()};
-  if (type == Type::integer &&
+  if (v.type == Type::integer &&
       !(value == std::trunc(value) && value >= kInteger.low && value <= kInteger.high))
     return "is of an integer, which must be a whole number from " + to_text(kInteger.low) + " to " +
            to_text(kInteger.high);
-  if (type == Type::boolean && value != 0.0 && value != 1.0) return "is of a Boolean, which must be 0 or 1";
+  if (v.type == Type::boolean && value != 0.0 && value != 1.0) return "is of a Boolean, which must be 0 or 1";
+  if (value < v.low || value > v.high)
+    return "must be " +
+           (std::isinf(v.low)    ? "<= " + to_text(v.high)
+            : std::isinf(v.high) ? ">= " + to_text(v.low)
+                                 : "from " + to_text(v.low) + " to " + to_text(v.high)) +
+           ", as the FMU declares";
   return {};
 }
 
@@ -132,19 +138,21 @@ void Fmu::check(ParameterCheck& check) const {
   std::set<std::string> names;
   const auto look = [&](const char* where, const std::string& name, const char* causality, bool real) {
     const std::string fault = fault_of(fmu, name, causality, real);
-    if (!fault.empty()) check.fail(where, name, "", fault);
-    if (!names.insert(name).second) check.fail(where, name, "", "is there twice");
+    if (!fault.empty())
+      check.fail(where, name, "", fault);
+    else if (!names.insert(name).second)
+      check.fail(where, name, "", "is there twice");
     return fault.empty();
   };
   for (const Input& input : params_.inputs) look("inputs", input.variable, "input", true);
   for (const Output& output : params_.outputs) look("outputs", output.variable, "output", true);
   for (const Parameter& p : params_.parameters) {
     if (!look("parameters", p.variable, "parameter", false)) continue;
-    const Type type = fmu.find(p.variable)->type;
-    const bool text = type == Type::text;
+    const ImportedVariable& variable = *fmu.find(p.variable);
+    const bool text = variable.type == Type::text;
     if (!text && !std::isfinite(p.value))
       check.fail("parameters", p.variable, "", "must have a value that is a finite number");
-    else if (const std::string fault = fault_of_value(type, p.value); !fault.empty())
+    else if (const std::string fault = fault_of_value(variable, p.value); !fault.empty())
       check.fail("parameters", p.variable + " = " + to_text(p.value), "", fault);
     if (text && !std::isnan(p.value))
       check.fail("parameters", p.variable, "", "is a text: give text, not value");

@@ -1,6 +1,7 @@
 #include "app/fmi/import/fmu_description.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 #include <expat.h>
 #include <map>
@@ -76,6 +77,7 @@ class Reader {
     } else if (path_.size() == 4 && parent == "ScalarVariable") {
       found_.variables.back().type = type_of(name);
       found_.variables.back().type_name = name;
+      add_range(attributes);
     } else if (path_.size() == 4 && name == "Dimension" && !found_.variables.empty()) {
       found_.variables.back().array = true;
     }
@@ -90,6 +92,16 @@ class Reader {
                                 .type_name = element,
                                 .causality = causality.empty() ? "local" : causality,
                                 .variability = value_of(attributes, "variability")});
+    add_range(attributes);
+  }
+  /// FMI 2 has min and max beside the type, FMI 3 in the variable itself.
+  void add_range(const Attributes& attributes) {
+    const auto read = [&](const char* name, double& bound) {
+      const std::string text = value_of(attributes, name);
+      std::from_chars(text.data(), text.data() + text.size(), bound);
+    };
+    read("min", found_.variables.back().low);
+    read("max", found_.variables.back().high);
   }
 
   FmuDescription found_;

@@ -1,5 +1,6 @@
 #pragma once
 /// The content of an FMU's modelDescription.xml that drev uses: FMI 2.0 and 3.0, co-simulation.
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +17,8 @@ struct ImportedVariable {
   std::string type_name;  ///< as the description spells it, for messages
   std::string causality;  ///< input, output, parameter, ...
   std::string variability;
+  double low = -std::numeric_limits<double>::infinity();  ///< its own min and max
+  double high = std::numeric_limits<double>::infinity();
   bool array = false;  ///< true: an array of FMI 3; drev accepts scalars only
 };
 

@@ -106,7 +106,7 @@ TEST_CASE("Constant speeds that contradict the reference") {
     m.add_node("other");
     m.set_reference("crank", constant_speed(10.0));
     m.constant_speed("other", 3.0);
-    CHECK(only_fault(m, {"train/other", "at 0 rad/s"}));
+    CHECK(only_fault(m, {"train/other", "nothing connects this node with the reference shaft, at "}));
   }
 }
 

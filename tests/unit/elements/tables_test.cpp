@@ -75,6 +75,8 @@ TEST_CASE("periodic table: faults") {
   CHECK(contains(faults(PeriodicTable({0, 1, 1}, {1, 2, 3})), "arguments[2] = 1 rad"));
   CHECK(contains(faults(PeriodicTable({0, 1, kTwoPi}, {1, 2, 1})), "leave out the point"));
   CHECK(contains(faults(PeriodicTable({0, kTwoPi}, {1, 1})), "of these two points one repeats the other"));
+  CHECK(contains(faults(PeriodicTable({0, 1, kTwoPi}, {1, 2, 3})), "such a curve cannot jump"));
+  CHECK(faults(PeriodicTable({0, 1, 7}, {1, 2, 1})).ends_with("less than the period, 6.283185307179586 rad"));
   CHECK(contains(faults(PeriodicTable({0, 1}, {1, NAN})), "values[1] = NaN N m, must be finite"));
   CHECK(contains(faults(PeriodicTable({0, 1}, {1, 2}, -1.0)), "period = -1 rad"));
 }

@@ -241,6 +241,15 @@ TEST_CASE("The text of an optimisation keeps long figures apart from their value
   INFO(found.err);
   CHECK(found.exit_code == 0);
   CHECK(contains(found.out, "least shaft.torque_Nm.max  "));
+  // An angle that nothing moves: no value is better than another.
+  const std::string still = (folder / "still.toml").string();
+  std::ofstream(still) << "format = 1\n[parameters]\nJ_kg_m2 = 1\n[nodes]\na = {}\n[elements]\n"
+                          "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = \"J_kg_m2\" }\n"
+                          "[run]\nduration_s = 0.01\nrecord = [\"a.angle_rad\"]\n";
+  const auto equal = drev_command({"optimise", still, "--vary", "J_kg_m2=1,2,3", "--minimise",
+                                   "a.angle_rad.max", "--record", "a.angle_rad"});
+  INFO(equal.out << equal.err);
+  CHECK(contains(equal.out, "any: all 3 have this figure"));
 }
 
 TEST_CASE("An optimum whose run starts in no steady state says so, and is not certain") {

@@ -20,7 +20,7 @@ constexpr const char* kDescription2 = R"(<?xml version="1.0"?>
   <ModelVariables>
     <ScalarVariable name="speed" valueReference="3" causality="input"><Real start="0"/></ScalarVariable>
     <ScalarVariable name="torque" valueReference="4" causality="output"><Real/></ScalarVariable>
-    <ScalarVariable name="count" valueReference="5" causality="parameter"><Integer start="1"/></ScalarVariable>
+    <ScalarVariable name="count" valueReference="5" causality="parameter"><Integer start="1" max="9"/></ScalarVariable>
     <ScalarVariable name="inner" valueReference="6"><Enumeration/></ScalarVariable>
   </ModelVariables>
 </fmiModelDescription>)";
@@ -50,10 +50,11 @@ TEST_CASE("The description of an FMU of either version is read") {
   CHECK(two.names("output") == std::vector<std::string>{"torque"});
   const FmuDescription three = read_description(
       R"(<fmiModelDescription fmiVersion="3.0" instantiationToken="t"><CoSimulation modelIdentifier="l"/>
-      <ModelVariables><Float64 name="a" valueReference="1" causality="input"><Dimension start="2"/></Float64>
+      <ModelVariables><Float64 name="a" valueReference="1" causality="input" min="-1"><Dimension start="2"/></Float64>
       <Float32 name="b" valueReference="2" causality="output"/></ModelVariables></fmiModelDescription>)");
   CHECK(three.fmi == 3);
   CHECK(three.find("a")->array);
+  CHECK(three.find("a")->low == -1.0);
   CHECK(three.find("b")->type == ImportedVariable::Type::other);
   for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
            {"", "line 1"},
@@ -135,7 +136,7 @@ TEST_CASE("What of an FMU does not fit the model is said with every variable") {
   const std::string all =
       findings({.step = 0.0,
                 .inputs = {{"torque", "time_s"}, {"spead", "time_s"}},
-                .outputs = {{"torque"}},
+                .outputs = {{"torque"}, {"torque"}},
                 .parameters = {{.variable = "count"}, {.variable = "inner", .value = 1.0}}});
   for (const char* words :
        {"step = 0 s", "torque, is an output of the FMU, and must be an input", "did you mean 'speed'?",
@@ -144,11 +145,19 @@ TEST_CASE("What of an FMU does not fit the model is said with every variable") {
     CHECK_THAT(all, Catch::Contains(words));
   }
   CHECK_THAT(findings({.step = 0.1}), Catch::Contains("must have one a node"));
+  // What is no input, and is an output, is not there twice.
+  const std::string wrong =
+      findings({.step = 0.1, .inputs = {{"torque", "time_s"}}, .outputs = {{"torque"}}});
+  CHECK_THAT(wrong, !Catch::Contains("twice"));
+  const auto count = [&](double value) {
+    return findings(
+        {.step = 0.1, .outputs = {{"torque"}}, .parameters = {{.variable = "count", .value = value}}});
+  };
+  CHECK(count(9.0).empty());
+  CHECK_THAT(count(10.0), Catch::Contains("count = 10, must be <= 9, as the FMU declares"));
   for (const double value : {3.4, 4294967299.0, -2147483649.0})  // no rounding into an Integer
-    CHECK_THAT(
-        findings(
-            {.step = 0.1, .outputs = {{"torque"}}, .parameters = {{.variable = "count", .value = value}}}),
-        Catch::Contains("count = " + to_text(value) + ", is of an integer, which must be a whole number"));
+    CHECK_THAT(count(value), Catch::Contains("count = " + to_text(value) +
+                                             ", is of an integer, which must be a whole number"));
   // There is no library in it: said where a run begins.
   const Fmu fmu({.file = file, .step = 0.1, .outputs = {{"torque"}}});
   CHECK_THROWS_WITH(fmu.open(0.0, 1.0), Catch::Contains("no library for this machine"));

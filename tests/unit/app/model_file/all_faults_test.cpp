@@ -77,6 +77,14 @@ TEST_CASE("What cannot be read of a node or element is not missed elsewhere") {
       {"elements.J_b.node"});
 }
 
+TEST_CASE("A control character in one name hides no other fault, and is said once") {
+  require_faults(
+      "format = 1\n[nodes]\n\"a*\" = {}\n\"b\\nc\" = {}\n[elements]\n"
+      "J = { type = \"inertia\", node = \"a*\", inertia_kg_m2 = 1 }\n"
+      "K = { type = \"inertia\", node = \"b\\nc\", inertia_kg_m2 = 1 }\n",
+      {"m.toml:3:1: m: node name = a*, must be", "m.toml:4:1: nodes, has a control character"});
+}
+
 TEST_CASE("A fault of the train hides none of [run] and [class]") {
   const std::string rest =
       "[run]\nrecord = [\"x.angle_rad\", \"a.angle_rad\", \"s.torque_Nm\"]\ndeflection = "
@@ -111,6 +119,37 @@ TEST_CASE("A firing order that cannot be read hides no fault of its engine") {
       {"bore = -0.001 m", "rod = 0.02 m", "strokes = 3",
        "firing_order = 1-1, must name each cylinder from 1 on once", "pressure.arguments[2]",
        "misfiring_cylinder = 7, must be the number of a cylinder, 1 to 2"});
+}
+
+TEST_CASE("A key of an engine that has no effect beside the others is a fault") {
+  const auto engine = [](const std::string& keys) {
+    return train(
+        "[elements.e]\ntype = \"engine_cylinders\"\nnodes = [\"a\", \"b\"]\nbore_mm = 100\n"
+        "stroke_mm = 100\nrod_mm = 200\nfiring = { angle_deg = [0, 360] }\n" +
+        keys);
+  };
+  const std::string pressure = "pressure = { angle_deg = [0, 360], pressure_bar = [50, 1] }\n";
+  const std::string gas =
+      "peak_pressure = { speed_rpm = [900], pressure_bar = [90] }\nreference_pressure_bar = 90\n"
+      "load = 0.5\nfiring_tdc_deg = 9\ninterpolation = \"cubic\"\ncrankcase_pressure_bar = 1\n";
+  std::vector<std::string> said{"e.first_firing_deg, has no effect: firing gives"};
+  for (const char* key : {"load", "firing_tdc_deg", "interpolation", "peak_pressure",
+                          "reference_pressure_bar", "crankcase_pressure_bar"})
+    said.push_back("e." + std::string(key) + ", has no effect: it belongs to pressure");
+  require_faults(engine(gas + "first_firing_deg = 9\n"), said);
+  require_faults(engine(gas + "first_firing_deg = 9\nmean_tangential_pressure_bar = 3\n"), said);
+  require_faults(engine(pressure + "load = 0.5\nreference_pressure_bar = 90\n"),
+                 {"e.load, has no effect: pressure has no", "e.reference_pressure_bar, has no effect: it"});
+  require_faults(engine("pressure = { angle_deg = [], pressure_bar = [] }\nload = 0.5\n"),
+                 {"e.pressure, holds no numbers"});
+  require_faults(engine(pressure + "peak_pressure = { speed_rpm = [], pressure_bar = [] }\n"),
+                 {"e.peak_pressure, holds no numbers"});
+  const std::string peak = "peak_pressure = { speed_rpm = [900], pressure_bar = [90] }\n";
+  require_faults(engine(pressure + peak + "reference_pressure_bar = 0\n"), {"reference_pressure = 0 Pa"});
+  // What nothing is scaled by may be zero.
+  const std::string none = "pressure = { angle_deg = [0, 360], pressure_bar = [0, 0] }\n";
+  CHECK(checked(engine(none)).exit_code == 0);
+  require_faults(engine(none + peak), {"the largest pressure must be > 0: it is the reference"});
 }
 
 TEST_CASE("Ratios of modal damping are checked beside the train that they damp") {

@@ -119,6 +119,7 @@ TEST_CASE("Faults of expressions are named") {
       {"1 +", "ends where"},
       {"1 1", "has '1' in column 3"},
       {"2 $ 3", "has '$' in column 3"},
+      {"2\u00b7pi", "has '\u00b7' in column 2"},
       {"(1", "lacks a ')' at its end"},
       {"m", "names m, which is no parameter"},
       {"gap_nm", "did you mean 'gap_"},
@@ -144,6 +145,7 @@ TEST_CASE("Faults of expressions are named") {
     CHECK(refused(text).find(said) != std::string::npos);
   }
   CHECK(refused(std::string(200, '(')).find("nested too deeply") != std::string::npos);
+  CHECK(refused(std::string(78, ' ') + "1\u03c0").find("1\" has '\u03c0' in column 80") != std::string::npos);
   CHECK(refused(std::string(2000, '1')).find("longer than 1000") != std::string::npos);
   CHECK(evaluate(std::string(900, '-') + "1", kScope).value == 1.0);
 }

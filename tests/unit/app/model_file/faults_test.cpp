@@ -54,11 +54,13 @@ const std::vector<Fault>& faults() {
       {"backlash_mm = 0.15", "backlash_mm = @\"0.15\"", "must be a finite number, not the text \"0.15\""},
       {"backlash_mm = 0.15", "@\"backlash mm\" = 0.15", "letters, digits and _ only"},
       {"backlash_mm = 0.15", "@pi = 3", "is not pi"},
-      {"default = 3, min", "default = @13, min", "13 is not between min and max"},
+      {"default = 3, min", "default = @13, min", "13 is not between min and max: it must be 1 to 9"},
       {"default = 3, min", "default = @2.5, min", "2.5 is no whole number"},
       {"cylinders = { default = 3,", "cylinders = @{", "lacks default"},
       {"min = 1, max", "@mim = 1, max", "did you mean 'min'?"},
-      {"min = 1, max = 9", "min = 9, max = 1", "has a min above its max"},
+      {"min = 1, max = 9", "min = 9, max = 1", "has a min above its max, 9 above 1"},
+      {"cylinders = { default = 3,", "x = { default = \"a\", choices = @[] }\ncylinders = { default = 3,",
+       "must hold one text at least"},
       {"order = [1, 3, 2]", "order = [1, @\"3\", 2]", "must hold finite numbers"},
       {"order = [1, 3, 2]", "order = @4", "must be an array of numbers"},
       {"lift = { angle_deg", "lift = { @angle", "needs a unit: angle_rad, angle_deg or angle_mrad"},
@@ -81,6 +83,10 @@ const std::vector<Fault>& faults() {
       {"gear = {}", "gear = { run_up = { speed_0_rpm = 0, speed_1_rpm = 100, time_0_s = 2, @time_1_s = 1 } }",
        "time_1 = 1 s, must be greater than time_0"},
       {"\"unit_{i}\" = {}", "\"unit_{i}\" = {}\n@unit_2 = {}", "the name unit_2 is used twice; first in"},
+      {"count = \"cylinders\"", "count = \"cylinders\"\ncounter = @\"pi\"",
+       "no parameter and not pi, not the text \"pi\""},
+      {"backlash_mm = 0.15\n", "backlash_mm = 0.15\ni = 5\n",
+       "repeat.counter, must be given: without it i counts"},
       // elements
       {"J_gear = { type = \"inertia\"", "J_gear = { type = @\"inertai\"", "did you mean 'inertia'?"},
       {"J_gear = { type = \"inertia\", ", "J_gear = @{ ", "lacks type: inertia, shaft_spring"},
@@ -284,6 +290,23 @@ TEST_CASE("Faults of files that are included or read are named in those") {
   CHECK(contains(run.err, "lift.csv:3:4: row, the cell of column 2 is no finite number"));
   CHECK(contains(run.err, "lift.csv:4:1: row, has 1 cells, the header 2"));
   CHECK(contains(run.err, "5 faults"));
+}
+
+TEST_CASE("A file with nodes or elements that is included twice is one fault") {
+  const test::TemporaryFolder folder;
+  const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder / name) << text; };
+  write("units.toml", "format = 1\n[parameters]\np = 2\n");
+  write("base.toml",
+        "format = 1\ninclude = \"units.toml\"\n[nodes]\na = {}\n[elements]\n"
+        "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = \"p\" }\n");
+  write("s.toml", "format = 1\ninclude = [\"base.toml\", \"units.toml\"]\n");
+  CHECK(test::drev_command({"check", (folder / "s.toml").string()}).exit_code == 0);
+  write("m.toml", "format = 1\ninclude = [\"s.toml\", \"base.toml\"]\n");
+  const auto run = test::drev_command({"check", (folder / "m.toml").string()});
+  INFO(run.err);
+  CHECK(contains(run.err, "m.toml:2:22: include, "));
+  CHECK(contains(run.err, "base.toml is included twice"));
+  CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
 }
 
 TEST_CASE("Nothing of a file that is no table is printed") {
