@@ -2,6 +2,7 @@
 #include <drev/app/model_file/model_file.hpp>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -48,6 +49,7 @@ std::vector<std::string> command_words(int argc, char** argv) {
 int guarded_main(int argc, char** argv) {
   try {
     end_on_signals();
+    std::signal(SIGXFSZ, SIG_IGN);  // what a limit refuses is an error of writing, which names its file
     register_fmu();
     if (argc > 1 && std::string_view(argv[1]) == "__complete") {
       std::string text;

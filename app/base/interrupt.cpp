@@ -54,7 +54,6 @@ void watch_signals() {
   sigaction(SIGTERM, &action, nullptr);
   action.sa_handler = give_up;
   sigaction(SIGALRM, &action, nullptr);
-  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() {

@@ -123,6 +123,7 @@ void OutputFile::flush() {
   // What a full disk took of it is no whole row.
   const int cut = ::ftruncate(descriptor_, written_);
   static_cast<void>(cut);
+  if (written_ == 0) std::remove(partial_.c_str());  // of which nothing is there
   fail(partial_, error);
 }
 

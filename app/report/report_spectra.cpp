@@ -91,7 +91,8 @@ Json spectra_object(const ReportHistory& history, double begin, double cycle, do
   }
   if (count < kFewest / 4) return nullptr;
   const double dt = span / static_cast<double>(count), line = 1.0 / span;
-  const auto lines = std::min(count / 2 - 1, static_cast<std::size_t>(std::ceil(highest / line)));
+  const auto lines = static_cast<std::size_t>(
+      std::min(static_cast<double>(count / 2 - 1), std::ceil(highest / line)));  // highest may be infinite
   const std::size_t pool = (lines + kLines - 1) / kLines;
   Json channels = Json::array();
   for (std::size_t s = 0; s < history.channel_count(); ++s) {

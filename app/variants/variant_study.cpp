@@ -167,7 +167,7 @@ VariantStudy::VariantStudy(RunRequest request, VariantPlan plan, bool record_ask
   if (record_asked) channels_ = request_.record;
   const Method& method = request_.method;
   if (method.exact())
-    why_not_lockstep_ = "contact changes differ between variants in exact propagation";
+    why_not_lockstep_ = "exact propagation takes the steps of each variant's own modes and contacts";
   else
     why_not_lockstep_ =
         ::drev::why_not_lockstep(request_.model.system, stepping_options(method, 1.0, nullptr)).value_or("");

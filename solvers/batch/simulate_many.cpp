@@ -299,7 +299,7 @@ ManyResult propagate_many(std::size_t count, const VariantBuilder& build, const 
               [&](const std::vector<const System*>& systems, const std::function<bool(double)>& go_on) {
                 return one_by_one(systems, options, many.channels, go_on);
               });
-  result.why_not_lockstep = "contact changes differ between variants";
+  result.why_not_lockstep = "exact propagation takes the steps of each variant's own modes and contacts";
   return result;
 }
 

@@ -64,7 +64,7 @@ struct ManyResult {
 ManyResult simulate_many(std::size_t count, const VariantBuilder& build, const TransientOptions& options,
                          const ManyOptions& many = {});
 
-/// The same by exact propagation: one by one over threads, since contact changes differ between variants.
+/// The same by exact propagation: one by one over threads, since each variant has steps of its own.
 /// options.on_change is called from several threads.
 ManyResult propagate_many(std::size_t count, const VariantBuilder& build, const ExactOptions& options,
                           const ManyOptions& many = {});

@@ -87,7 +87,7 @@ function showSpectra() {
     );
     const readable = readableUnit(channel.unit, most),
       name = channelName(channel.name);
-    const decade = Math.ceil(Math.log10(Math.max(most * readable.factor, 1e-290) * 1.3));
+    const decade = most > 0 ? Math.ceil(Math.log10(most * readable.factor * 1.3)) : 0;
     const floor = 10 ** (decade - 6);
     const chart = new Chart(grid, {
       group,

@@ -59,15 +59,18 @@ function showFigures() {
         ];
       }),
     ),
-    make("h3", {}, "Where they are least and largest"),
-    table(
-      ["figure", "", "value", "variant", "parameters"],
-      known.filter(varies).flatMap((figure) => [
-        [figure.name, "least", quantity(figure.min.value, figure.unit, 6), figure.min.variant, variedText(figure.min.varied)],
-        [figure.name, "largest", quantity(figure.max.value, figure.unit, 6), figure.max.variant, variedText(figure.max.varied)],
-      ]),
-    ),
   );
+  if (known.some(varies))
+    byId("figures").append(
+      make("h3", {}, "Where they are least and largest"),
+      table(
+        ["figure", "", "value", "variant", "parameters"],
+        known.filter(varies).flatMap((figure) => [
+          [figure.name, "least", quantity(figure.min.value, figure.unit, 6), figure.min.variant, variedText(figure.min.varied)],
+          [figure.name, "largest", quantity(figure.max.value, figure.unit, 6), figure.max.variant, variedText(figure.max.varied)],
+        ]),
+      ),
+    );
   const warnings = result.warnings || []; // tables of older versions have none
   if (result.failures.length)
     byId("figures").append(

@@ -419,3 +419,14 @@ TEST_CASE("Spectra are over whole cycles at any constant nominal speed: an order
   REQUIRE_FALSE(lines.empty());
   CHECK(*std::max_element(lines.begin(), lines.end()) == Approx(50.0).epsilon(1e-4));
 }
+
+TEST_CASE("A train without a frequency or a speed of its own has the spectrum of what was recorded") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "one.toml").string();
+  std::ofstream(path) << "format = 1\n[nodes]\na = {}\n[elements]\n"
+                         "J = { type = \"inertia\", node = \"a\", inertia_kg_m2 = 1 }\n"
+                         "T = { type = \"applied_torque\", node = \"a\", torque_Nm = 1 }\n"
+                         "[run]\nduration_s = 1\nrecord = [\"a.speed_rad_per_s\"]\n";
+  const Json spectra = block_of_run({path}).at("spectra");
+  CHECK(decoded<float>(spectra.at("channels")[0].at("amplitude").get<std::string>()).size() > 10);
+}

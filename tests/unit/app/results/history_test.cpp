@@ -316,3 +316,15 @@ TEST_CASE("Two runs do not write one file") {
   CHECK(second.exit_code == 3);
   CHECK(contains(second.err, "another process, or another output of this command, is writing it"));
 }
+
+TEST_CASE("An export onto a full disk says why it failed and leaves no file") {
+  const drev::test::TemporaryFolder folder;
+  for (const std::string name : {"c.toml", "c.fmu"}) {
+    const auto full = drev_command(
+        {"export", "two_inertia", name == "c.toml" ? "--out" : "--fmu", (folder / name).string()},
+        {.file = name == "c.toml" ? 0U : 100000U});
+    CHECK(full.exit_code == 3);
+    if (name == "c.fmu") CHECK(contains(full.err, "File too large"));
+    CHECK(std::filesystem::is_empty(folder / ""));
+  }
+}
