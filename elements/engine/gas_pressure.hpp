@@ -47,7 +47,7 @@ class GasPressure {
   /// compression alone follow, with factors of their own.
   std::vector<double> factors(double speed) const;
   double curve(int k, double angle, bool misfires) const;
-  /// The pressure about an angle as a cubic, from knot to knot of its curves (a KnottedLoad's piece).
+  /// The pressure about an angle as a cubic, from knot to knot of all its curves, whatever the speed (a KnottedLoad's piece).
   CubicPiece piece(double angle, double direction, double speed, bool misfires) const;
   bool follows_speed() const {
     return !params_.speed.empty() || !params_.peak_speed.empty() || params_.firing.gated();
