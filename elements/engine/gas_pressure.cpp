@@ -128,8 +128,8 @@ double GasPressure::curve(int k, double angle, bool misfires) const {
 
 CubicPiece GasPressure::piece(double angle, double direction, double speed, bool misfires) const {
   std::vector<double> parts = ungated_factors(std::abs(speed));
-  const double fires = misfires ? 0.0 : firing_part(std::abs(speed));
-  if (fires == 0.0 || fires == 1.0) return ungated_piece(angle, direction, parts, fires == 0.0);
+  if (misfires || !params_.firing.gated()) return ungated_piece(angle, direction, parts, misfires);
+  const double fires = firing_part(std::abs(speed));
   std::vector<double> rest = parts;
   for (double& part : parts) part *= fires;
   for (double& part : rest) part *= 1.0 - fires;
@@ -158,8 +158,8 @@ CubicPiece GasPressure::ungated_piece(double angle, double direction, const std:
     sum.high = angle + ((backwards ? half : period_) - behind);
     if (backwards) side = -1.0, at = -behind;
   }
+  // Of curves that have no part at this speed too: knots do not follow the speed.
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    if (parts[k] == 0.0) continue;
     const double entered = at + params_.firing_tdc;
     const CubicPiece c = curves_.curves()[k].piece(entered, side * direction);
     const double below = entered - c.low, above = c.high - entered;

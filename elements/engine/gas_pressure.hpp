@@ -49,7 +49,7 @@ class GasPressure {
   /// compression alone follow, with factors of their own.
   std::vector<double> factors(double speed) const;
   double curve(int k, double angle, bool misfires) const;
-  /// The pressure about an angle as a cubic, from knot to knot of its curves (a KnottedLoad's piece).
+  /// The pressure about an angle as a cubic, from knot to knot of all its curves, whatever the speed (a KnottedLoad's piece).
   CubicPiece piece(double angle, double direction, double speed, bool misfires) const;
   /// The largest size of its slope by the size of the speed, over ranges of the angle and of that size [Pa s/rad].
   double steepest_by_speed(const Interval& angle, const Interval& size, bool misfires) const;

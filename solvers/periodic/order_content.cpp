@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/dense/fourier.hpp"
 #include "core/names/rounded_text.hpp"
@@ -21,7 +22,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kSame = 1e-12;  // difference over the largest torque up to which loads are equal [-]
-constexpr int kProbes = 24;      // number of angles at which dependence on time, speed and turns is tested
+constexpr double kAngleRounding = 2e-15;  // of an angle that is moved, over the angle [-]
 constexpr int kFewestSamples = 256;
 
 LoadResponse at_angle(const LoadTerm& term, double angle, double speed, double t = 0.0,
@@ -30,17 +31,22 @@ LoadResponse at_angle(const LoadTerm& term, double angle, double speed, double t
       {.t = t, .nominal_angle = angle, .deviation = deviation, .speed = speed, .nominal_speed = speed});
 }
 
-/// Angles that no division of a turn into equal parts hits [rad].
-double probe_angle(int i) { return 0.37 + 0.911 * i; }
+/// Up to which difference values at a probe, moved by up to kMostTurns turns or not, are equal. size: of all values; steep: the slope
+/// there, if it is known.
+double rounding_at(const LoadProbes::Probe& probe, double size, double steep = 0.0) {
+  const double angle = std::abs(probe.angle) + OrderContent::kMostTurns * kTwoPi;
+  return kSame * size + kAngleRounding * angle * std::max(std::abs(steep), size / probe.width);
+}
 
-bool repeats_after(const SpeedScaledLoad& load, int curve, double angle) {
-  double size = 0.0, off = 0.0;
-  for (int i = 0; i < kProbes; ++i) {
-    const double value = load.curve(curve, probe_angle(i));
-    size = std::max(size, std::abs(value));
-    off = std::max(off, std::abs(load.curve(curve, probe_angle(i) + angle) - value));
-  }
-  return off <= kSame * size;
+/// Whether a curve of a load repeats after an angle.
+bool repeats_after(const SpeedScaledLoad& load, int curve, const LoadProbes& probes,
+                   const std::vector<double>& values, double angle) {
+  double size = 0.0;
+  for (const double value : values) size = std::max(size, std::abs(value));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (std::abs(load.curve(curve, probes.at[i].angle + angle) - values[i]) > rounding_at(probes.at[i], size))
+      return false;
+  return true;
 }
 
 }  // namespace
@@ -55,8 +61,11 @@ OrderContent::OrderContent(const System& system, std::vector<double> orders, std
       source = *relative;
       source.scaled = dynamic_cast<const SpeedScaledLoad*>(term.load);
       source.relative = static_cast<int>(relative - sources_.data());
-    } else if (!inspect(term, some_speed, source, findings))
-      continue;
+    } else {
+      if (!dynamic_cast<const HarmonicLoad*>(term.load))
+        source.probes = probes_of(*term.load, system.ratio(term.node) * some_speed, kMostTurns);
+      if (!inspect(term, some_speed, source, findings)) continue;
+    }
     follows_speed_ = follows_speed_ || source.called;
     loads_.push_back(&term);
     sources_.push_back(source);
@@ -91,21 +100,28 @@ bool OrderContent::inspect(const LoadTerm& term, double at_speed, Source& source
     return source.constant || ratio != 0.0 || refuse(does_not_turn);
   }
   const SpeedScaledLoad* scaled = source.scaled = dynamic_cast<const SpeedScaledLoad*>(term.load);
-  std::array<double, kProbes> torques{};
+  std::vector<LoadResponse> there;
   double size = 0.0;
-  for (int i = 0; i < kProbes; ++i) {
-    torques[idx(i)] = at_angle(term, probe_angle(i), speed).torque;
-    size = std::max(size, std::abs(torques[idx(i)]));
+  for (const LoadProbes::Probe& probe : source.probes.at) {
+    there.push_back(at_angle(term, probe.angle, speed));
+    size = std::max(size, std::abs(there.back().torque));
   }
-  // Whether another way to evaluate the load gives the same torques, to rounding of the largest.
+  // Whether another way to evaluate the load gives the same torques, to rounding of the largest and of the angle.
   const auto same = [&](const auto& other) {
-    for (int i = 0; i < kProbes; ++i)
-      if (std::abs(other(probe_angle(i)).torque - torques[idx(i)]) > kSame * size) return false;
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      const LoadProbes::Probe& probe = source.probes.at[i];
+      if (std::abs(other(probe.angle).torque - there[i].torque) >
+          rounding_at(probe, size, there[i].dtorque_dangle))
+        return false;
+    }
     return true;
   };
   bool in_time = !term.load->frequencies().empty() || !term.load->breakpoints().empty();
-  for (const double t : {0.0173, 0.291, 1.37, 11.3, 97.7})
-    in_time = in_time || (!scaled && !same([&](double a) { return at_angle(term, a, speed, t); }));
+  constexpr std::array kTimes{0.0173, 0.291, 1.37, 11.3, 97.7};  // s
+  std::size_t i = 0;
+  in_time =
+      in_time ||
+      (!scaled && !same([&](double a) { return at_angle(term, a, speed, kTimes[i++ % kTimes.size()]); }));
   if (in_time)
     return refuse(
         "is a function of the time and has no orders; a sweep takes loads that follow the angle, such as "
@@ -117,10 +133,13 @@ bool OrderContent::inspect(const LoadTerm& term, double at_speed, Source& source
   source.constant = ratio == 0.0 || (standing && !scaled);
   if (ratio == 0.0 && !standing) return refuse(does_not_turn);
   if (!source.constant && !source.table) {
-    const std::size_t curves = scaled ? scaled->speed_factors(speed).size() : 0;
+    std::vector<std::vector<double>> curves(scaled ? scaled->speed_factors(speed).size() : 0);
+    for (std::size_t k = 0; k < curves.size(); ++k)
+      for (const LoadProbes::Probe& probe : source.probes.at)
+        curves[k].push_back(scaled->curve(static_cast<int>(k), probe.angle));
     const auto repeats = [&](double angle) {
-      for (std::size_t k = 0; k < curves; ++k)
-        if (!repeats_after(*scaled, static_cast<int>(k), angle)) return false;
+      for (std::size_t k = 0; k < curves.size(); ++k)
+        if (!repeats_after(*scaled, static_cast<int>(k), source.probes, curves[k], angle)) return false;
       return scaled || same([&](double a) { return at_angle(term, a + angle, speed); });
     };
     const std::array turns{1, 2, 3, 4, 5, 6, 8, 10, 12, 15, kMostTurns};
@@ -148,17 +167,20 @@ bool OrderContent::changes(std::size_t load, double speed, std::vector<Finding>&
     return changes;
   }
   if (!source.called) return !source.known;
-  std::vector<double> probes;
-  for (int i = 0; i < kProbes; ++i) {
-    const LoadResponse r = at_angle(term, probe_angle(i), system_.ratio(term.node) * speed, 0.173 * i);
-    probes.insert(probes.end(), {r.torque, r.dtorque_dangle, r.dtorque_dspeed});
+  const double here = system_.ratio(term.node) * speed;
+  Source found;
+  // Knots do not follow the speed.
+  found.probes = dynamic_cast<const KnottedLoad*>(term.load) && source.known
+                     ? source.probes
+                     : probes_of(*term.load, here, kMostTurns);
+  for (std::size_t i = 0; i < found.probes.at.size(); ++i) {
+    const LoadResponse r = at_angle(term, found.probes.at[i].angle, here, 0.173 * static_cast<double>(i));
+    found.probed.insert(found.probed.end(), {r.torque, r.dtorque_dangle, r.dtorque_dspeed});
   }
-  if (source.known && probes == source.probes) return false;
-  Source here;
-  if (!inspect(term, speed, here, findings)) return false;
-  if (here.turns == source.turns) here.samples = source.samples;
-  here.probes = std::move(probes);
-  source = std::move(here);
+  if (source.known && found.probes.at == source.probes.at && found.probed == source.probed) return false;
+  if (!inspect(term, speed, found, findings)) return false;
+  if (found.turns == source.turns) found.samples = source.samples;
+  source = std::move(found);
   return true;
 }
 
@@ -183,10 +205,11 @@ void OrderContent::pick(const std::vector<Complex>& lines, double spacing, bool 
   if (content.left_out < 1e-7 * content.rms) content.left_out = 0.0;  // of the difference, rounding
 }
 
-int OrderContent::fewest_samples(double spacing) const {
+int OrderContent::fewest_samples(const Source& source, double spacing) const {
   const double highest = orders_.empty() ? 1.0 : orders_.back();
-  int samples = kFewestSamples;
-  while (samples < 8.0 * highest / spacing && samples < kMostSamples) samples *= 2;
+  const double parts = source.probes.finest > 0.0 ? source.turns * kTwoPi / source.probes.finest : 0.0;
+  int samples = std::max(kFewestSamples, source.samples);
+  while (samples < std::max(8.0 * highest / spacing, 2.0 * parts) && samples < kMostSamples) samples *= 2;
   return samples;
 }
 
@@ -270,17 +293,29 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
   const double ratio = system_.ratio(term.node);
   const double spacing = std::abs(ratio) / source.turns;
   FourierTransform transform;
+  std::vector<LoadResponse> values;
   std::vector<double> torque;
   std::vector<Complex> lines;
-  const auto content_with = [&](int samples) {
+  const auto sample = [&](int samples) {
+    const std::vector<LoadResponse> half =
+        std::move(values);  // every second new sample, except the first time
+    values.resize(static_cast<std::size_t>(samples));
+    for (int i = 0; i < samples; ++i)
+      values[idx(i)] = !half.empty() && i % 2 == 0
+                           ? half[idx(i / 2)]
+                           : at_angle(term, source.turns * kTwoPi * i / samples, ratio * speed);
+  };
+  // Of every sample, or of every second one.
+  const auto content_of = [&](int every) {
     Content content;
     content.node = term.node;
     double steepest = 0.0;
+    const int samples = static_cast<int>(values.size()) / every;
     torque.resize(static_cast<std::size_t>(samples));
     double square = 0.0;
     for (int i = 0; i < samples; ++i) {
-      const LoadResponse r = at_angle(term, source.turns * kTwoPi * i / samples, ratio * speed);
-      torque[static_cast<std::size_t>(i)] = r.torque;
+      const LoadResponse& r = values[idx(i * every)];
+      torque[idx(i)] = r.torque;
       content.mean += r.torque / samples;
       content.angle_slope += r.dtorque_dangle / samples;
       content.speed_slope += r.dtorque_dspeed / samples;
@@ -298,14 +333,12 @@ OrderContent::Content OrderContent::of_samples(const LoadTerm& term, Source& sou
     pick(lines, spacing, ratio > 0.0, content);
     return content;
   };
-  if (source.samples > 0) return content_with(source.samples);
-  int samples = fewest_samples(spacing);
-  Content content = content_with(samples);
-  while (samples < kMostSamples) {
-    Content finer = content_with(2 * samples);
-    if (difference(content, finer) <= kSettled) break;
-    content = std::move(finer);
-    samples *= 2;
+  int samples = fewest_samples(source, spacing);
+  sample(samples);
+  Content coarse = content_of(2), content = content_of(1);
+  while (samples < kMostSamples && difference(coarse, content) > kSettled) {
+    sample(samples *= 2);
+    coarse = std::exchange(content, content_of(1));
   }
   source.samples = samples;
   return content;

@@ -7,8 +7,8 @@
 /// repeats with the angle T of its node has the orders m 2 pi |n| / T. Tables are integrated exactly (they
 /// are piecewise linear: c_o = -(2 / (P o^2)) sum of the changes of slope times exp(-i o phi) at the knots).
 /// Harmonics are used as they are given. Curves with known knots are integrated between them
-/// (Gauss-Legendre). Other loads are sampled at N equidistant angles, with N doubled until the content has
-/// converged. A load that does not depend on the speed is evaluated once; of one that is called, what it depends on is found anew
+/// (Gauss-Legendre). Other loads are sampled at N equidistant angles, with N doubled until the content of every second one is
+/// the same. What a load depends on, and after how many turns it repeats, is told at the angles of LoadProbes. A load that does not depend on the speed is evaluated once; of one that is called, what it depends on is found anew
 /// at each speed at which it gives other torques: a gate may open there.
 ///
 /// The class also gives the means of the load's slopes dp/dtheta and dp/dtheta', by which the load acts as a
@@ -23,6 +23,8 @@
 
 #include <complex>
 #include <vector>
+
+#include "solvers/periodic/load_probes.hpp"
 
 namespace drev {
 
@@ -62,9 +64,10 @@ class OrderContent {
   struct Source {
     double turns = 1.0;  // turns of its node in which the load repeats
     bool constant = false, known = false;
-    bool changed = false;        // by the speed last asked for
-    bool called = false;         // true: its torque and slopes may follow the speed in any way
-    std::vector<double> probes;  // torques and slopes of a load that is called, at the speed of its content
+    bool changed = false;                   // by the speed last asked for
+    bool called = false;                    // true: its torque and slopes may follow the speed in any way
+    LoadProbes probes;                      // where it is looked at, at the speed of its content
+    std::vector<double> probed;             // torques and slopes there of a load that is called
     bool harmonics = false, table = false;  // true: the load gives its harmonics, or its table
     const SpeedScaledLoad* scaled = nullptr;
     int relative = -1;            // number of the first load of its family, if that is another one
@@ -77,8 +80,8 @@ class OrderContent {
   };
   /// The source of the first load of the same family on a node of the same ratio; null: none.
   const Source* family_source(const LoadTerm& term) const;
-  /// Finds the properties of a load from its place and by evaluating it at a speed of the reference shaft; false: refused, with
-  /// findings.
+  /// Finds the properties of a load from its place and by evaluating it at the source's probes, at a speed of the reference shaft;
+  /// false: refused, with findings.
   bool inspect(const LoadTerm& term, double at_speed, Source& source, std::vector<Finding>& findings) const;
   bool changes(std::size_t load, double speed, std::vector<Finding>& findings);
   Content of_table(const LoadTerm& term) const;
@@ -88,7 +91,7 @@ class OrderContent {
   /// Integrates the curves between their knots; false: the load does not give any knots.
   bool integrate_curves(const LoadTerm& term, Source& source, double speed, Eigen::Index count) const;
   /// The number of samples to begin with, for a load whose lines have this spacing [order].
-  int fewest_samples(double spacing) const;
+  int fewest_samples(const Source& source, double spacing) const;
   /// Largest difference of mean and amplitudes, relative to the largest of them in `fine` [-].
   static double difference(const Content& coarse, const Content& fine);
   void sample_curves(const LoadTerm& term, Source& source, Eigen::Index count) const;

@@ -141,7 +141,7 @@ void OrderContent::sample_curves(const LoadTerm& term, Source& source, Eigen::In
     source.products = vary.transpose() * vary / samples;
     return curves;
   };
-  int samples = fewest_samples(spacing);
+  int samples = fewest_samples(source, spacing);
   source.curves = curves_with(samples);
   while (samples < kMostSamples) {
     samples *= 2;

@@ -66,6 +66,11 @@ std::vector<EngineCylinders::Params> engines() {
   for (std::size_t i = 0; i < all.back().gas.angle.size(); ++i)
     all.back().gas.load.push_back(i < 10 ? 0.5 : 1.0);
   all.back().gas.at_load = 0.7;
+  all.push_back(all.back());  // over the speed, through a gate
+  all.back().gas.speed = {50.0, 50.0, 50.0,  50.0,  50.0,  50.0,  50.0,  50.0,
+                          50.0, 50.0, 170.0, 170.0, 170.0, 170.0, 170.0, 170.0};
+  all.back().gas.load.clear();
+  all.back().gas.firing = {.from_speed = 80.0, .speed_ramp = 30.0};
   all.push_back(engine_of({}));
   all.back().mean_tangential_pressure = 3e5;
   all.back().tangential_pressure = {{0.5, 2e5, 0.3}, {1.0, 4e5, -0.4}, {6.5, 1e5, 2.0}};
@@ -143,6 +148,10 @@ TEST_CASE("A cylinder's pieces and curves are its torque, on both sides of every
           const double bound = direction > 0.0 ? piece.high : piece.low;
           const double end = std::isfinite(bound) ? bound : angle + 0.1 * direction;
           REQUIRE(direction * (end - angle) > 0.0);
+          for (const double other : {0.0, 20.0, 90.0, 1000.0}) {
+            const CubicPiece there = knots->piece(angle, direction, other);
+            CHECK((there.low == piece.low && there.high == piece.high));  // knots do not follow the speed
+          }
           for (const double part : {0.01, 0.3, 0.77, 0.99}) {
             const double at = angle + part * (end - angle), x = at - angle;
             const auto& c = piece.terms;

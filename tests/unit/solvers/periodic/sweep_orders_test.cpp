@@ -1,6 +1,7 @@
 // Orders that a sweep solves side by side, in sets of lanes, against the same orders one by one, which are solved by
 // the elimination with pivoting. Covers solvers/periodic/linear_response.hpp, lane_sections.hpp and
-// solvers/linear/lane_elimination.hpp through sweep_linear(); loads that only some of the speeds have (order_content.hpp); and
+// solvers/linear/lane_elimination.hpp through sweep_linear(); loads that only some of the speeds have (order_content.hpp), and
+// narrow ones (load_probes.hpp); and
 // loads about the nominal speed in a sweep with contacts (law_balance.hpp).
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <complex>
 
+#include "solvers/periodic/order_content.hpp"
 #include "solvers/periodic/trigonometric_sum.hpp"
 #include "tests/catch.hpp"
 
@@ -210,4 +212,100 @@ TEST_CASE("A propeller's damping factor counts in a sweep with contacts as in on
     if (motion.asked)
       CHECK(motion.half_range()[0] == Approx(closed.sections[0].half_range()[seen++]).epsilon(1e-6));
   CHECK(seen == 2);
+}
+
+namespace {
+
+/// A shaft between a clock and a disc with this load.
+template <class Element>
+System loaded(typename Element::Params load) {
+  Model m("loaded");
+  m.add_node("clock");
+  m.add_node("disc");
+  m.constant_speed("clock", 60.0);
+  m.add<Inertia>("J", {"disc"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {"clock", "disc"}, {.stiffness = 1000.0});
+  m.add<Element>("load", {"disc"}, std::move(load));
+  return m.build();
+}
+
+/// 1e5 w/60 max(0, cos(theta/2 - phase) - 0.999): 100 N m at 60 rad/s, 10 degrees wide.
+TorqueFunction::Params short_pulse(double phase) {
+  using Op = Formula::Op;
+  return {.formula = Formula({{.op = Op::variable, .a = 0},
+                              {.op = Op::constant, .value = 0.5},
+                              {.op = Op::multiply, .a = 0, .b = 1},
+                              {.op = Op::constant, .value = phase},
+                              {.op = Op::subtract, .a = 2, .b = 3},
+                              {.op = Op::cos, .a = 4},
+                              {.op = Op::constant, .value = 0.999},
+                              {.op = Op::subtract, .a = 5, .b = 6},
+                              {.op = Op::constant},
+                              {.op = Op::larger, .a = 7, .b = 8},
+                              {.op = Op::variable, .a = 1},
+                              {.op = Op::multiply, .a = 9, .b = 10},
+                              {.op = Op::constant, .value = 1e5 / 60.0},
+                              {.op = Op::multiply, .a = 11, .b = 12}})};
+}
+
+EngineCylinders::Params cylinder(std::vector<double> degrees, std::vector<double> bar) {
+  EngineCylinders::Params p{.bore = 0.1, .stroke = 0.1, .rod = 0.2, .firing_angles = {0.0}};
+  for (const double angle : degrees) p.gas.angle.push_back(deg(angle));
+  for (const double pressure : bar) p.gas.pressure.push_back(1e5 * pressure);
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("Orders of narrow loads, wherever they stand in two turns, are their integrals", "[linear_sweep]") {
+  const std::vector<double> orders{0.5, 1.0, 1.5, 2.0};
+  const PeriodicTable table({0.0, deg(90), deg(92), deg(94)}, {0.0, 0.0, 100.0, 0.0}, 2.0 * kTwoPi);
+  std::vector<System> systems;
+  for (const double phase : {0.0, 0.8, 1.7, 3.0})
+    systems.push_back(loaded<TorqueFunction>(short_pulse(phase)));
+  for (const double width : {2.0, 10.0})
+    systems.push_back(loaded<EngineCylinders>(
+        cylinder({0.0, 90.0, 90.0 + 0.5 * width, 90.0 + width, 180.0}, {0.0, 0.0, 100.0, 0.0, 0.0})));
+  for (const auto interpolation : {Interpolation::linear, Interpolation::cubic})
+    systems.push_back(loaded<CamTorque>({.angle_table = table, .interpolation = interpolation}));
+  for (const System& system : systems) {
+    std::vector<Finding> findings;
+    OrderContent content(system, orders, findings);
+    REQUIRE(findings.empty());
+    for (const double speed : {60.0, 90.0}) {
+      const OrderContent::Content& found = content.at(speed)[0];
+      constexpr int kPoints = 40000;
+      double mean = 0.0;
+      std::vector<std::complex<double>> sums(orders.size());
+      for (int i = 0; i < kPoints; ++i) {
+        const double angle = 2.0 * kTwoPi * (i + 0.5) / kPoints;
+        const double torque =
+            system.loads()[0]
+                .load->evaluate({.nominal_angle = angle, .speed = speed, .nominal_speed = speed})
+                .torque;
+        mean += torque / kPoints;
+        for (std::size_t k = 0; k < orders.size(); ++k)
+          sums[k] += std::polar(2.0 * torque / kPoints, -orders[k] * angle);
+      }
+      INFO(&system - systems.data() << ", " << speed);
+      CHECK(found.mean == Approx(mean).epsilon(1e-4));
+      for (std::size_t k = 0; k < orders.size(); ++k)
+        CHECK(std::abs(found.amplitudes[k] - sums[k]) <= 1e-4 * std::abs(sums[0]));
+    }
+  }
+}
+
+TEST_CASE("Orders of an engine do not depend on the speed that is asked for first", "[linear_sweep]") {
+  // A spike that the speed 100 rad/s has, through a gate that opens at 70 rad/s.
+  EngineCylinders::Params p =
+      cylinder({0, 180, 0, 180, 91, 92, 93, 400}, {0.0, 10.0, 0.0, 20.0, 0.0, 100.0, 0.0, 0.0});
+  p.gas.speed = {0.0, 0.0, 50.0, 50.0, 100.0, 100.0, 100.0, 100.0};
+  p.gas.firing = {.from_speed = 70.0, .speed_ramp = 5.0};
+  const System system = loaded<EngineCylinders>(p);
+  std::vector<Finding> findings;
+  OrderContent alone(system, {0.5, 1.0, 1.5}, findings), after(system, {0.5, 1.0, 1.5}, findings);
+  REQUIRE(findings.empty());
+  after.at(20.0);
+  CHECK(alone.at(100.0)[0].amplitudes == after.at(100.0)[0].amplitudes);
+  CHECK(std::abs(alone.at(100.0)[0].amplitudes[0]) > 1.0);
 }
