@@ -44,7 +44,7 @@ class SlopeLook {
   static constexpr double kRounding = 1e-9;   // the same over the largest torque [-]
   static constexpr double kSeen = 1e-4;       // change that samples must meet, over the load's range [-]
   static constexpr double kNarrowest = 1e-7;  // part that is not halved: a jump [rad]
-  static constexpr int kMostLooks = 4000;
+  static constexpr int kMostLooks = 1500;
 
   struct Place {
     double angle = 0.0, torque = 0.0, slope = 0.0;  // slope: its size
