@@ -12,7 +12,7 @@
 /// A = sqrt(sum |X_h|^2) over the orders h (for one order its amplitude): an equivalent linearisation, solved for at each
 /// speed of a sweep; T_m is the mean torque at that speed. In time, with contacts followed and for modes both stand at
 /// `at_mean_torque` and `at_amplitude`; modes of a sweep have the mean torque at each speed. Modes have k* at their own frequency
-/// f = Im lambda/(2 pi), its loss as a damping Im k*/(2 pi f). Relative damping psi (loss a cycle over elastic energy) = 2 pi eta.
+/// f = Im lambda/(2 pi), Im lambda > 0: J lambda^2 + k* = 0 of one inertia. Relative damping psi (loss a cycle over elastic energy) = 2 pi eta.
 /// In linear sweeps and modes k* holds exactly at every order. In time and with contacts followed a chain of Maxwell branches stands for it,
 ///
 ///   G(s) = k_0 + sum_j k_j (c_j s + m_j s^2)/(k_j + c_j s + m_j s^2),     c_j = tau_j k_j,  m_j = c_j/(8 w_high)

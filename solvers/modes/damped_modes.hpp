@@ -20,9 +20,9 @@
 /// Real parts within 4 eps w_0 are 0, and all are where nothing damps and the tangents are symmetric. A real lambda
 /// of several motions at once stays real, though rounding splits it into a pair.
 ///
-/// Elements with a complex stiffness k*(f) have it at the frequency Im lambda / (2 pi) of each mode, under the load that they carry in time
-/// (ViscoelasticStiffness), and internal nodes of their chains are at rest; real lambda have Re k*(0). Only where the tangents are
-/// symmetric: otherwise they are as in time.
+/// Elements with a complex stiffness k*(f) add it to K at the frequency Im lambda / (2 pi) of each mode, under the load that they carry
+/// in time (ViscoelasticStiffness), and internal nodes of their chains are at rest; real lambda have Re k*(0). Only where the tangents
+/// are symmetric: otherwise they are as in time.
 ///
 /// Source: F. Tisseur, K. Meerbergen, The quadratic eigenvalue problem, SIAM Review 43(2), 2001,
 /// doi:10.1137/S0036144500381988.

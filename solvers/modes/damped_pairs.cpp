@@ -36,8 +36,14 @@ bool DampedPairs::refine(const std::function<ModeMatrices(double)>& matrices, Co
   Complex at = lambda;  // value of s at which S is factored, moved off an exact eigenvalue
   for (int step = 0; step < kMostSteps; ++step) {
     if (!(lambda.imag() > 0.0)) return false;
-    const auto [damping, stiffness] = matrices(lambda.imag());
-    if (!elimination_.factorize(mass_, damping, stiffness, at)) {
+    const auto& [damping, stiffness, loss] = matrices(lambda.imag());
+    const bool lossy = loss.size() > 0;
+    if (lossy) {
+      // Real K - L Re s/Im s and C + L/Im s are K + i L + s C at this s.
+      damping_ = damping + loss / at.imag();
+      stiffness_ = stiffness - (at.real() / at.imag()) * loss;
+    }
+    if (!elimination_.factorize(mass_, lossy ? damping_ : damping, lossy ? stiffness_ : stiffness, at)) {
       if (at != lambda) return false;
       at = lambda * (1.0 + 1e-9);
       continue;
@@ -50,7 +56,8 @@ bool DampedPairs::refine(const std::function<ModeMatrices(double)>& matrices, Co
     const auto form = [&](const Vector& values) -> Complex {
       return (shape.transpose() * pair_product(pattern_, values, shape))(0, 0);
     };
-    const Complex a = form(mass_), c = form(damping), k = form(stiffness);
+    const Complex a = form(mass_), c = form(damping),
+                  k = form(stiffness) + (lossy ? Complex(0.0, 1.0) * form(loss) : 0.0);
     const Complex root = std::sqrt(c * c - 4.0 * a * k);
     const Complex one = (-c + root) / (2.0 * a), other = (-c - root) / (2.0 * a);
     const Complex found = std::abs(one - lambda) < std::abs(other - lambda) ? one : other;

@@ -2,13 +2,13 @@
 /// DampedPairs: damped modes of large systems, one by one, each from a guess (the undamped mode, or the same
 /// mode at a neighbouring speed):
 ///
-///   S(s) x = 0,  S(s) = K + s C + s^2 M
+///   S(s) x = 0,  S(s) = K + i L + s C + s^2 M
 ///   x <- S(s)^-1 (C + 2 s M) x,   s <- the root of x' S(s) x = 0 next to s       (x' without conjugation)
 ///
 /// Each step takes one complex elimination, whose cost on chains and trees of shafts is proportional to the
 /// number of nodes. Since the matrices are symmetric, x' S x is stationary at a mode and s converges
 /// cubically. Where damping is light, the mode found is that of the guess; strong damping between modes may
-/// lead two guesses to one mode, which the caller detects by lambda. Matrices may depend on the frequency Im s of the mode:
+/// lead two guesses to one mode, which the caller detects by lambda. L is the loss of complex stiffnesses. Matrices may depend on the frequency Im s of the mode:
 /// each step takes them anew, and their derivatives are left out. Where they are far from those of the guess, part goes from 0 to 1
 /// in steps, each of which starts at the mode of the one before.
 /// Source: P. Lancaster, Lambda-matrices and Vibrating Systems, Pergamon, 1966, section 7.3 (generalised Rayleigh
@@ -26,11 +26,12 @@ namespace drev {
 /// Values on System::pattern(). They hold until the next are asked for.
 struct ModeMatrices {
   const Vector &damping, &stiffness;
+  const Vector& loss;  ///< empty: none
 };
 
 /// A damped mode, the first, and those that coincide with it.
 struct DampedPole {
-  Vector damping;  ///< values on the pattern at which these are damped modes
+  Vector damping;  ///< C, values on the pattern, with which these are damped modes
   Eigen::VectorXcd lambda;
   Eigen::MatrixXcd shapes;  ///< over the unknowns
 };
@@ -60,6 +61,7 @@ class DampedPairs {
   const SparseMatrix& pattern_;
   Vector mass_;
   ComplexElimination elimination_;
+  Vector damping_, stiffness_;  // with the loss
 };
 
 }  // namespace drev

@@ -96,21 +96,22 @@ DampedModeSet damped_modes_at_own_frequency(const System& system, const DampedMo
   set.in_time = false;
   set.vectors = with_held(stiffnesses.held(), set.vectors);
   const Assembler assembler(system);
-  Vector damping, stiffness, its_damping, its_stiffness;
+  Vector damping, stiffness, its_loss, its_stiffness;
   assembler.contact_values({0.0, 1.0, 0.0}, options.contact, damping);
   assembler.contact_values({0.0, 0.0, 1.0}, options.contact, stiffness);
   if (options.damping.size() > 0) damping += options.damping;
   DampedPairs pairs(system, stiffnesses.held());
   const auto matrices = [&](double part, double omega) -> ModeMatrices {
-    its_damping = damping, its_stiffness = stiffness;
+    its_loss.setZero(damping.size());
+    its_stiffness = stiffness;
     stiffnesses.add(
-        omega,
+        1.0,
         [&](std::size_t t) {
           const double still = beyond_in_time(system, stiffnesses, t, kStill).real();
           return still + part * (beyond_in_time(system, stiffnesses, t, omega) - still);
         },
-        its_damping, its_stiffness);
-    return {its_damping, its_stiffness};
+        its_loss, its_stiffness);
+    return {damping, its_stiffness, its_loss};
   };
   Eigen::VectorXcd lambda(set.vectors.cols());
   for (Eigen::Index m = 0; m < lambda.size(); ++m) lambda[m] = set.modes[static_cast<std::size_t>(m)].lambda;

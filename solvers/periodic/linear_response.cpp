@@ -298,18 +298,18 @@ Complex LinearResponse::mode_stiffness(std::size_t term, double speed, double om
 
 ModeMatrices LinearResponse::mode_matrices(double speed, double omega, double part) {
   const Vector& damping = damping_at(speed);
-  if (complex_->count() == 0) return {damping, stiffness_};
-  mode_damping_ = damping;
+  if (complex_->count() == 0) return {damping, stiffness_, mode_loss_};
+  mode_loss_.setZero(damping.size());
   mode_stiffness_ = stiffness_;
   complex_->add(
-      omega,
+      1.0,
       [&](std::size_t t) {
         const Complex given =
             complex_->beyond(t, omega, system_.frequency_terms()[t].stiffness->load_in_matrices());
         return given + part * (mode_stiffness(t, speed, omega) - given);
       },
-      mode_damping_, mode_stiffness_);
-  return {mode_damping_, mode_stiffness_};
+      mode_loss_, mode_stiffness_);
+  return {damping, mode_stiffness_, mode_loss_};
 }
 
 void LinearResponse::find_carried_loads(double speed) {

@@ -129,7 +129,7 @@ class LinearResponse {
   Vector damping_before_, stiffness_before_;  // values of the last speed
   bool plain_ = false;                        // nothing was added to the values of the last speed
   // Values with complex stiffnesses; unused without them.
-  Vector damping_at_omega_, stiffness_at_omega_, mode_damping_, mode_stiffness_;
+  Vector damping_at_omega_, stiffness_at_omega_, mode_loss_, mode_stiffness_;
   std::optional<ComplexStiffnesses> complex_;
   bool all_constant_ = false;  // true: every term is constant over frequency, whatever load it carries
   std::optional<ComplexElimination> elimination_;

@@ -52,7 +52,7 @@ System long_chain(int n, bool coupled) {
 
 TEST_CASE("A coupling with a loss factor: one mode, whatever the chain in time", "[own_frequency]") {
   // Over a decade the chain of a loss factor of 0.5 has no static stiffness at all.
-  for (const auto& [eta, highest] : {std::pair{0.1, 80.0}, {0.5, 400.0}}) {
+  for (const auto& [eta, highest] : {std::pair{0.1, 80.0}, {0.5, 400.0}, {2.0, 400.0}}) {
     const System system = two_inertias(rubber(1e5, eta, highest)).build();
     const double w = std::sqrt(1e5 / kReduced);
     CHECK(elastic_mode_count(system, Contact::closed) == 1);
@@ -62,12 +62,11 @@ TEST_CASE("A coupling with a loss factor: one mode, whatever the chain in time",
     CHECK(modes.shapes(system.node("load"), 0) / modes.shapes(system.node("motor"), 0) ==
           Approx(-kMotor / kLoad).epsilon(1e-12));
     CHECK(modes.vectors.rows() == system.size());
-    // |lambda| = w, and 2 |Re lambda| Im lambda = eta w^2.
+    // lambda^2 = -w^2 (1 + i eta).
     const DampedModeSet damped = solve_damped_modes(system);
     REQUIRE(damped.modes.size() == 1);
-    const double angle = 0.5 * std::asin(eta);
-    CHECK(damped.modes[0].lambda.real() == Approx(-w * std::sin(angle)).epsilon(1e-11));
-    CHECK(damped.modes[0].lambda.imag() == Approx(w * std::cos(angle)).epsilon(1e-11));
+    const std::complex<double> i(0.0, 1.0), lambda = i * w * std::sqrt(1.0 + i * eta);
+    CHECK(std::abs(damped.modes[0].lambda - lambda) < 1e-11 * w);
     REQUIRE(damped.real_lambda.size() == 1);
     CHECK(std::abs(damped.real_lambda[0]) < 1e-12 * w);
   }
@@ -81,14 +80,13 @@ TEST_CASE("Stiffness that follows the frequency: that of each mode's own", "[own
   material.frequencies = {0.0, 100.0}, material.stiffnesses = {8e4, 1.6e5},
   material.loss_factors = {0.1, 0.2};
   const System system = two_inertias(material).build();
-  // J w^2 = a + b w, and with loss J |lambda|^2 = k(Im lambda), 2 J |Re lambda| Im lambda = Im k*(Im lambda).
+  // J w^2 = a + b w, and with loss J lambda^2 = -k*(Im lambda).
   const double a = 8e4, b = 8e4 / hz(100.0);
   const double w = (b + std::sqrt(b * b + 4.0 * kReduced * a)) / (2.0 * kReduced);
   CHECK(solve_modes(system).omega(0) == Approx(w).epsilon(1e-12));
   const std::complex<double> lambda = solve_damped_modes(system).modes.at(0).lambda;
   const double k = a + b * lambda.imag(), eta = 0.1 + 0.1 * lambda.imag() / hz(100.0);
-  CHECK(kReduced * std::norm(lambda) == Approx(k).epsilon(1e-10));
-  CHECK(-2.0 * kReduced * lambda.real() * lambda.imag() == Approx(k * eta).epsilon(1e-9));
+  CHECK(std::abs(kReduced * lambda * lambda + k * std::complex<double>(1.0, eta)) < 1e-10 * k);
 }
 
 TEST_CASE("Two couplings side by side and a damper's ring: shares of energy and heat", "[own_frequency]") {
@@ -109,7 +107,8 @@ TEST_CASE("Two couplings side by side and a damper's ring: shares of energy and 
   const ModeSet one = solve_modes(held);
   REQUIRE(one.count() == 1);
   CHECK(one.omega(0) == Approx(1000.0).epsilon(1e-12));
-  CHECK(solve_damped_modes(held).modes.at(0).natural_frequency_Hz == Approx(to_hz(1000.0)).epsilon(1e-11));
+  CHECK(solve_damped_modes(held).modes.at(0).natural_frequency_Hz ==
+        Approx(to_hz(1000.0) * std::pow(1.04, 0.25)).epsilon(1e-11));
 }
 
 TEST_CASE("A coupling in a chain, small and large: the modes with a spring in its place", "[own_frequency]") {
