@@ -9,7 +9,6 @@
 #include <map>
 #include <numeric>
 
-#include "solvers/periodic/damped_poles.hpp"
 #include "solvers/periodic/linear_response.hpp"
 #include "solvers/periodic/sweep_peaks.hpp"
 

@@ -9,7 +9,6 @@
 #include <span>
 
 #include "solvers/periodic/bracketed_search.hpp"
-#include "solvers/periodic/damped_poles.hpp"
 #include "solvers/periodic/linear_response.hpp"
 #include "solvers/periodic/trigonometric_sum.hpp"
 
@@ -26,6 +25,8 @@ constexpr double kSameSeed = 1e-2;      // part of a mode's half width below whi
 constexpr double kPeakSpeed = 1e-7;     // tolerance of a peak's speed relative to it [-]
 constexpr double kSameTop = 1e-6;       // relative difference of criticals' speeds that are one top [-]
 constexpr double kSameSpeed = 1e-10;    // relative difference of speeds that are one but for rounding [-]
+// Difference of lambda relative to it below which shapes are any of their common space [-].
+constexpr double kCoincide = 1e-7;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 class Search {
@@ -401,6 +402,49 @@ class Search {
 };
 
 }  // namespace
+
+DampedPole DampedPoles::at(const SweepModes& modes, Eigen::Index mode, double speed) {
+  Eigen::Index nearest = 0;
+  (modes.speeds.array() - speed).abs().minCoeff(&nearest);
+  const auto column = static_cast<std::size_t>(nearest);
+  const Eigen::VectorXcd& all = lambda[column];
+  const auto coincides = [](std::complex<double> a, std::complex<double> b) {
+    return std::abs(a - b) <= kCoincide * std::abs(b);
+  };
+  std::vector<Eigen::Index> same{mode};
+  for (Eigen::Index j = 0; j < all.size(); ++j)
+    if (j != mode && coincides(all[j], all[mode])) same.push_back(j);
+  DampedPole pole{{}, all(same), shapes[column](Eigen::all, same)};
+  // Asked for only where it is needed: loads that are called are looked at anew at another speed.
+  const auto damping_of = [&](double at, std::complex<double> of) { return matrices(at, of.imag()).damping; };
+  if (modes.speeds.size() == 1) {
+    pole.damping = damping_of(modes.speeds[nearest], all[mode]);
+    return pole;
+  }
+  const std::complex<double> guess = modes.at(mode, speed);
+  DampedPole here{{}, pole.lambda, pole.shapes};
+  Eigen::Index count = 0;
+  for (Eigen::Index j = 0; j < pole.lambda.size(); ++j) {
+    std::complex<double> found = guess;
+    Eigen::VectorXcd shape = pole.shapes.col(j);
+    bool good = pairs.refine([&](double omega) { return matrices(speed, omega); }, found, shape);
+    for (Eigen::Index k = 0; k < all.size() && j == 0; ++k)
+      good &=
+          all[k] == 0.0 || coincides(all[k], all[mode]) || std::abs(found - all[k]) > std::abs(found - guess);
+    if (!good && j == 0) {
+      pole.damping = damping_of(modes.speeds[nearest], all[mode]);
+      pole.lambda.setConstant(guess);
+      return pole;
+    }
+    if (!good || (j > 0 && !coincides(found, here.lambda[0]))) continue;
+    here.lambda[count] = found;
+    here.shapes.col(count++) = shape;
+  }
+  here.damping = damping_of(speed, here.lambda[0]);
+  here.lambda = here.lambda.head(count).eval();
+  here.shapes = here.shapes.leftCols(count).eval();
+  return here;
+}
 
 void find_sweep_peaks(const System& system, LinearResponse& response, TrigonometricSum& sum,
                       const std::function<void()>& wanted_pause, LinearSweep& sweep) {

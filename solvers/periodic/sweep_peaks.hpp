@@ -12,11 +12,24 @@
 /// speed at which they meet.
 #include <drev/solvers/periodic/linear_sweep.hpp>
 
+#include "solvers/modes/damped_pairs.hpp"
+
 namespace drev {
 
 class LinearResponse;
 class TrigonometricSum;
-struct DampedPoles;
+
+/// The modes of a sweep with their shapes, for each of the modes' speeds.
+struct DampedPoles {
+  DampedPairs pairs;
+  std::function<ModeMatrices(double speed, double omega)> matrices;
+  std::vector<double> jumps = {};  ///< speeds on both sides of those at which a load's slope or size jumps
+  std::vector<Eigen::VectorXcd> lambda = {};  ///< of modes that coincide all; 0: not known
+  std::vector<Eigen::MatrixXcd> shapes = {};  ///< over the unknowns
+  /// A mode at a speed with the matrices there, from the nearest of the modes' speeds, at which it oscillates. Where no mode is found
+  /// from there, or another one, the mode is that between the modes' speeds, with the damping and the shape of the nearest.
+  DampedPole at(const SweepModes& modes, Eigen::Index mode, double speed);
+};
 
 /// Finds sweep.modes and growth, and what residues at these modes take; sweep.modes_note where modes are missing. Up to 400
 /// unknowns all modes that swing, dense, at one speed or more. A mode that swings at some of the speeds only, and is overdamped

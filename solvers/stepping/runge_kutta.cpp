@@ -94,24 +94,18 @@ void RungeKutta::estimate(const EvaluatedState& from, const EvaluatedState& to, 
       e_v += (h * tableau_.e[i]) * acceleration_[idx(j)];
     }
   }
+  if (!loads_.empty()) add_change_before_stages(from, h, e_v);
   if (tableau_.diagonal() > 0.0) equation_.filter(h, e_z, e_v);
-  if (!loads_.empty()) add_change_before_stages(from, h, e_z, e_v);
 }
 
-void RungeKutta::add_change_before_stages(const EvaluatedState& from, double h, Vector& e_z, Vector& e_v) {
-  Vector beyond = -from.p;
+void RungeKutta::add_change_before_stages(const EvaluatedState& from, double h, Vector& e_v) {
+  Vector beyond = -from.p, more;
   for (Eigen::Index i = 0; i < tableau_.to_start.size(); ++i)
     if (tableau_.to_start[i] != 0.0) beyond += tableau_.to_start[i] * loads_[static_cast<std::size_t>(i)];
   if (beyond.isZero(0.0)) return;
-  Vector more_z = Vector::Zero(e_z.size()), more_v;
-  equation_.acceleration(beyond, more_v);
-  more_v *= tableau_.c.minCoeff() * h;
-  equation_.filter(h, more_z, more_v);
-  const auto add = [](const Vector& more, Vector& e) {
-    for (Eigen::Index i = 0; i < e.size(); ++i) e[i] += std::copysign(std::abs(more[i]), e[i]);
-  };
-  add(more_z, e_z);
-  add(more_v, e_v);
+  equation_.acceleration(beyond, more);
+  const double missed = tableau_.c.minCoeff() * h;
+  for (Eigen::Index i = 0; i < e_v.size(); ++i) e_v[i] += std::copysign(missed * std::abs(more[i]), e_v[i]);
 }
 
 }  // namespace drev

@@ -22,7 +22,7 @@ class RungeKutta final : public Stepper {
 
   /// Of methods without a stage at the start: what the loads' jump or kink before the first stage, which none of the
   /// stages sees, may add at most; that is how far the loads at the start are off those at the stages, carried on to it.
-  void add_change_before_stages(const EvaluatedState& from, double h, Vector& e_z, Vector& e_v);
+  void add_change_before_stages(const EvaluatedState& from, double h, Vector& e_v);
 
   const ButcherTableau& tableau_;
   std::vector<Vector> rate_, acceleration_;  // v_i, a_i of the stages; explicit: and of the end

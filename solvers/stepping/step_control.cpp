@@ -19,6 +19,7 @@ constexpr double kFailureFactor = 0.25;
 constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 constexpr double kRateRounding = std::numeric_limits<double>::epsilon();  // rounding of v_1 - v_0
 constexpr double kTooShort = 0.05;                                        // E with which the step grows
+constexpr double kFallen = 0.5;                                           // part of E that is less
 constexpr double kLeastError = 1e-6;                                      // as far as the controller looks
 
 /// The motions as a rigid body of the floating parts that have others too, contacts closed: columns over the unknowns, of norm 1.
@@ -124,9 +125,7 @@ double StepControl::error(const State& end, const Vector& e_z, const Vector& e_v
     const double of_force = kRounding * h * force;
     const auto kind = static_cast<std::size_t>(kind_[unknown]);
     take(std::abs(e_z[i]), of_z, of_z, s.z[kind]);
-    const double by_deflection = std::sqrt(std::max(0.0, stiffness_[i]) / inertia) * s.z[kind];
-    take(std::abs(e_v[i]), of_v + of_force / inertia, of_v + of_force / solved,
-         std::max(s.v[kind], by_deflection));
+    take(std::abs(e_v[i]), of_v + of_force / inertia, of_v + of_force / solved, s.v[kind]);
   }
   const bool rounding = worst > share ? beyond_rounding <= share : beyond_solved <= kTooShort * share;
   return rounding ? std::min(kTooShort, worst / share) : worst / share;
@@ -140,13 +139,16 @@ void StepControl::accepted(double h, double error, bool as_planned) {
   // A step that was cut says little about longer ones.
   if (!as_planned) return set(std::max(h * factor, h_));
   last_error_ = e;
-  set(least_of(h * factor));
+  const bool shorter_helps = e <= 1.0 || e < kFallen * last_above_;
+  last_above_ = e > 1.0 ? e : 0.0;
+  set(shorter_helps ? h * factor : std::max(h, h * factor));
 }
 
 void StepControl::rejected(double h, double error) {
   const double q = options_.order;
   after_rejection_ = true;
-  set(least_of(h * std::clamp(kSafety * std::pow(error, -1.0 / q), kLeastFactor, 0.8)));
+  last_above_ = error;
+  set(h * std::clamp(kSafety * std::pow(error, -1.0 / q), kLeastFactor, 0.8));
 }
 
 void StepControl::failed(double h) {

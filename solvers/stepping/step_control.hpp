@@ -5,8 +5,7 @@
 ///   h <- 0.9 h E^(-0.7/q) E_last^(0.4/q)      q: order of e/h
 ///
 /// T is the run's length. scale is the largest deviation, or rate, so far among unknowns of one kind
-/// (turning, moving along), without the motions of floating parts as rigid bodies; parts that have no other keep these. A rate's error counts beside the
-/// rate at which the node, with the others held, would swing by the largest deviation. Implicit methods
+/// (turning, moving along), without the motions of floating parts as rigid bodies; parts that have no other keep these. Implicit methods
 /// step on a grid of 2^(1/4), so that few matrices are factored. Source of the controller: K. Gustafsson,
 /// ACM TOMS 17, 1991, doi:10.1145/210232.210242.
 #include <drev/core/state.hpp>
@@ -21,7 +20,6 @@ class StepControl {
     double tolerance = 0.0;             ///< [-]
     double duration = 0.0;              ///< s, T
     double first = 0.0, largest = 0.0;  ///< s
-    double least = 0.0;                 ///< s; the error never asks for a shorter step
     int order = 2;                      ///< q
     bool on_grid = false;
   };
@@ -38,7 +36,8 @@ class StepControl {
   /// E of a step of length h that ends at a state, from the errors of deviations and rates. Where rounding alone may have made
   /// it, one with which the step grows: no shorter step would lower it, and steps that are all rounding would stay so.
   double error(const State& end, const Vector& e_z, const Vector& e_v, double h);
-  /// After an accepted step. as_planned: not cut short by a stop or contact.
+  /// After an accepted step. as_planned: not cut short by a stop or contact. One of E > 1 is followed by a shorter one only if E
+  /// has fallen with the step: it does not at a jump, nor where it is rounding.
   void accepted(double h, double error, bool as_planned);
   void rejected(double h, double error);
   /// A step that could not be solved, and one that is to be halved.
@@ -53,7 +52,6 @@ class StepControl {
   };
   Scales with(const State& state, double part) const;
   void set(double h);
-  double least_of(double h) const { return std::max(h, std::min(options_.least, options_.largest)); }
 
   const System& system_;
   Options options_;
@@ -62,6 +60,7 @@ class StepControl {
   Vector stiffness_;       // of each unknown, with the laws' where they are closed
   Vector law_forces_;      // sizes of the laws' elastic forces at the end of the step at hand
   double h_ = 0.0, last_error_ = 1.0;
+  double last_above_ = 0.0;  // last E above 1 of a step in succession; 0: there was none
   bool after_rejection_ = false;
   Scales scales_;
 };

@@ -128,7 +128,6 @@ class Run final : public StepMotion {
     StepControl::Options o{.tolerance = options_.tolerance,
                            .duration = duration(),
                            .largest = kLargestStep * duration(),
-                           .least = kLeastStep * duration(),
                            .order = scheme.order(),
                            .on_grid = !scheme.is_explicit()};
     if (fastest > 0.0) o.largest = std::min(o.largest, kRoundedStep / fastest);

@@ -1,6 +1,6 @@
 // Linear sweeps against closed forms, exact propagation and brute force.
 // Covers solvers/periodic/linear_response.hpp, order_content.hpp, trigonometric_sum.hpp,
-// trigonometric_kernels.hpp, lane_sections.hpp, damped_poles.hpp and sweep_peaks.hpp through sweep_linear(), and solvers/periodic/bracketed_search.hpp.
+// trigonometric_kernels.hpp, lane_sections.hpp and sweep_peaks.hpp through sweep_linear(), and solvers/periodic/bracketed_search.hpp.
 #include <drev/core/units.hpp>
 #include <drev/elements/catalogue.hpp>
 #include <drev/solvers/exact/exact_propagation.hpp>
