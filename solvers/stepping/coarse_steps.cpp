@@ -32,7 +32,7 @@ void CoarseSteps::look(Assembler& assembler, const EvaluatedState& from, const E
   const double far = std::sqrt(0.15);
   off_.setZero(mass_.size());
   largest_ = from.p.cwiseAbs().cwiseMax(to.p.cwiseAbs());
-  const StepPolynomial motion(from.state, to.state, h, 2);
+  const StepPolynomial motion(from.state, to.state, h, 3);
   for (const auto& [s, weight] : {std::pair{0.5 - far, 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + far, 5.0 / 18}}) {
     motion.at(s, inside_.state);
     assembler.set_time(inside_.state.t);

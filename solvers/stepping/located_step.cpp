@@ -17,7 +17,7 @@ LocatedStep::Result LocatedStep::step(const EvaluatedState& from, double h, doub
                                       EvaluatedState& to) {
   const double landing = kLanding * h;
   Assembler& assembler = stepper_.equation().assembler();
-  const int order = stepper_.equation().scheme().order();
+  const int degree = StepPolynomial::degree_for(stepper_.equation().scheme());
   Result result;
   std::optional<ContactLocator::Crossing> target;
   double low = 0.0, high = h, length = h;  // no crossing up to low, one before high
@@ -37,7 +37,7 @@ LocatedStep::Result LocatedStep::step(const EvaluatedState& from, double h, doub
       high = length;
       next = target->s * length;
     } else {
-      const StepPolynomial motion(from.state, to.state, length, order);
+      const StepPolynomial motion(from.state, to.state, length, degree);
       const auto crossing = locator_.first(motion, from, to, assembler);
       assembler.set_time(whole ? t_evaluate : t);
       if (crossing) {

@@ -1,14 +1,8 @@
 #include "solvers/stepping/step_control.hpp"
 
-#include <drev/core/assembler.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
-#include <vector>
-
-#include "solvers/linear/sparse_cholesky.hpp"
 
 namespace drev {
 
@@ -21,32 +15,6 @@ constexpr double kRateRounding = std::numeric_limits<double>::epsilon();  // rou
 constexpr double kTooShort = 0.05;                                        // E with which the step grows
 constexpr double kFallen = 0.5;                                           // part of E that is less
 constexpr double kLeastError = 1e-6;                                      // as far as the controller looks
-
-/// The motions as a rigid body of the floating parts that have others too, contacts closed: columns over the unknowns, of norm 1.
-/// None where the stiffness holds something unstable.
-Eigen::MatrixXd rigid_motions(const System& system) {
-  Vector stiffness;
-  Assembler(system).contact_values({0.0, 0.0, 1.0}, Contact::closed, stiffness);
-  const double hold = stiffness.size() > 0 ? stiffness.cwiseAbs().maxCoeff() : 0.0;
-  std::vector<int> held;
-  for (const std::string& name : system.floating_parts(Contact::closed))
-    if (const int unknown = system.node_map(system.node(name)).unknown; unknown >= 0) held.push_back(unknown);
-  Eigen::MatrixXd motions(system.size(), 0);
-  if (held.empty() || !(hold > 0.0)) return motions;
-  for (const int unknown : held) stiffness[system.diagonal_slots()[idx(unknown)]] += hold;
-  SparseCholesky factor(system.pattern());
-  if (factor.factorize(system.pattern(), stiffness) != FactorStatus::success) return motions;
-  for (const int unknown : held) {
-    Vector x = Vector::Zero(system.size());
-    x[unknown] = hold;
-    factor.solve(x, x);
-    if ((x.array() != 0.0).count() < 2) continue;
-    motions.conservativeResize(Eigen::NoChange, motions.cols() + 1);
-    motions.rightCols(1) = x.normalized();
-  }
-  return motions;
-}
-
 }  // namespace
 
 StepControl::StepControl(const System& system, const Options& options)
@@ -56,7 +24,10 @@ StepControl::StepControl(const System& system, const Options& options)
     if (map.unknown < 0) continue;
     kind_[idx(map.unknown)] = system.node_kind(node) == NodeKind::translational;
   }
-  rigid_ = rigid_motions(system);
+  const Vector& direction = system.nominal_direction();
+  if (system.rigid_mode_count(Contact::closed) == 1 && direction.norm() > 0.0 &&
+      system.elastic_mode_count() > 0)
+    rigid_ = direction.normalized();
   stiffness_.setZero(system.size());
   law_forces_.setZero(system.size());
   for (Eigen::Index i = 0; i < stiffness_.size(); ++i)
@@ -74,12 +45,13 @@ void StepControl::set(double h) {
 
 StepControl::Scales StepControl::with(const State& state, double part) const {
   Scales s = scales_;
-  const Vector z = state.z - rigid_ * (rigid_.transpose() * state.z),
-               v = state.v - rigid_ * (rigid_.transpose() * state.v);
-  for (Eigen::Index i = 0; i < z.size(); ++i) {
+  const bool floats = rigid_.size() > 0;
+  const double c_z = floats ? rigid_.dot(state.z) : 0.0, c_v = floats ? rigid_.dot(state.v) : 0.0;
+  for (Eigen::Index i = 0; i < state.z.size(); ++i) {
+    const double r = floats ? rigid_[i] : 0.0;
     const std::size_t kind = static_cast<std::size_t>(kind_[static_cast<std::size_t>(i)]);
-    s.z[kind] = std::max(s.z[kind], part * std::abs(z[i]));
-    s.v[kind] = std::max(s.v[kind], part * std::abs(v[i]));
+    s.z[kind] = std::max(s.z[kind], part * std::abs(state.z[i] - c_z * r));
+    s.v[kind] = std::max(s.v[kind], part * std::abs(state.v[i] - c_v * r));
   }
   return s;
 }

@@ -5,7 +5,7 @@
 ///   h <- 0.9 h E^(-0.7/q) E_last^(0.4/q)      q: order of e/h
 ///
 /// T is the run's length. scale is the largest deviation, or rate, so far among unknowns of one kind
-/// (turning, moving along), without the motions of floating parts as rigid bodies; parts that have no other keep these. Implicit methods
+/// (turning, moving along); of a system that floats, without the motion as a rigid body, unless it has no other. Implicit methods
 /// step on a grid of 2^(1/4), so that few matrices are factored. Source of the controller: K. Gustafsson,
 /// ACM TOMS 17, 1991, doi:10.1145/210232.210242.
 #include <drev/core/state.hpp>
@@ -56,7 +56,7 @@ class StepControl {
   const System& system_;
   Options options_;
   std::vector<int> kind_;  // 0 turning, 1 moving along
-  Eigen::MatrixXd rigid_;  // motions of floating parts as rigid bodies, columns of norm 1
+  Vector rigid_;           // empty: does not float
   Vector stiffness_;       // of each unknown, with the laws' where they are closed
   Vector law_forces_;      // sizes of the laws' elastic forces at the end of the step at hand
   double h_ = 0.0, last_error_ = 1.0;

@@ -16,7 +16,7 @@ std::pair<double, double> StepEnergy::over(StepEquation& equation, const Evaluat
       {0.5 - std::sqrt(0.15), 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + std::sqrt(0.15), 5.0 / 18}};
   Assembler& assembler = equation.assembler();
   const System& system = assembler.system();
-  const StepPolynomial motion(from.state, to.state, h, equation.scheme().order());
+  const StepPolynomial motion(from.state, to.state, h, StepPolynomial::degree_for(equation.scheme()));
   double input = 0.0, dissipated = 0.0;
   for (const Node& node : nodes) {
     motion.at(node.s, inside_.state);

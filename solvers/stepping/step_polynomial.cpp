@@ -19,13 +19,14 @@ void StepPolynomial::at(double s, State& inside) const {
   // The weights of z_0 and z_1 add to 1 (value) or 0: in terms of their difference rounding stays small.
   const auto sum = [&](const double* c, double scale, Vector& out) {
     out = scale * (c[3] * (to_.z - from_.z) + c[1] * from_.v + c[4] * to_.v);
-    if (quintic_) out += scale * (c[2] * from_.a + c[5] * to_.a);
+    if (degree_ == 5) out += (scale * c[2]) * from_.a;
+    if (degree_ > 3) out += (scale * c[5]) * to_.a;
   };
   inside.t = from_.t + s * h_;
   sum(w[0], 1.0, inside.z);
   inside.z += from_.z;
   sum(w[1], 1.0 / h_, inside.v);
-  if (quintic_)
+  if (degree_ == 5)
     sum(w[2], 1.0 / (h_ * h_), inside.a);
   else
     inside.a = (1.0 - s) * from_.a + s * to_.a;
@@ -35,8 +36,15 @@ void StepPolynomial::at(double s, State& inside) const {
 StepPolynomial::Coefficients StepPolynomial::through(double x_0, double v_0, double a_0, double x_1,
                                                      double v_1, double a_1) const {
   const double d_0 = h_ * v_0, d_1 = h_ * v_1, rise = x_1 - x_0;
-  if (!quintic_) return {x_0, d_0, 3 * rise - 2 * d_0 - d_1, d_0 + d_1 - 2 * rise, 0.0, 0.0};
+  if (degree_ == 3) return {x_0, d_0, 3 * rise - 2 * d_0 - d_1, d_0 + d_1 - 2 * rise, 0.0, 0.0};
   const double c_0 = 0.5 * h_ * h_ * a_0, c_1 = 0.5 * h_ * h_ * a_1;
+  if (degree_ == 4)
+    return {x_0,
+            d_0,
+            6 * rise - 3 * d_0 - 3 * d_1 + c_1,
+            -8 * rise + 3 * d_0 + 5 * d_1 - 2 * c_1,
+            3 * rise - d_0 - 2 * d_1 + c_1,
+            0.0};
   return {x_0,
           d_0,
           c_0,
@@ -52,7 +60,7 @@ StepPolynomial::Coefficients StepPolynomial::of(const std::vector<Entry>& entrie
     x[1] += e.coeff * from_.v[e.index];
     x[3] += e.coeff * to_.z[e.index];
     x[4] += e.coeff * to_.v[e.index];
-    if (quintic_) x[2] += e.coeff * from_.a[e.index], x[5] += e.coeff * to_.a[e.index];
+    if (degree_ > 3) x[2] += e.coeff * from_.a[e.index], x[5] += e.coeff * to_.a[e.index];
   }
   return through(x[0], x[1], x[2], x[3], x[4], x[5]);
 }

@@ -40,7 +40,7 @@ void Stepper::estimate_by_quadrature(const EvaluatedState& from, const Evaluated
   e_v = to.state.v - from.state.v - (h * end_weight) * a_0;
   e_z = to.state.z - from.state.z - h * from.state.v - (h * h * end_weight) * a_0;
   e_v -= (h * end_weight) * acceleration(to);
-  const StepPolynomial motion(from.state, to.state, h, equation_.scheme().order());
+  const StepPolynomial motion(from.state, to.state, h, StepPolynomial::degree_for(equation_.scheme()));
   const auto add = [&](const Node& node) {
     motion.at(node.s, inside_.state);
     equation_.assembler().set_time(inside_.state.t);

@@ -102,7 +102,7 @@ class Run final : public StepMotion {
 
   Point at(double t) override {
     const double h = next_->state.t - now_->state.t;
-    StepPolynomial(now_->state, next_->state, h, options_.scheme.order())
+    StepPolynomial(now_->state, next_->state, h, StepPolynomial::degree_for(options_.scheme))
         .at((t - now_->state.t) / h, look_.state);
     look_.state.t = t;
     look_assembler_.set_time(t);
@@ -141,6 +141,7 @@ class Run final : public StepMotion {
         behind_break_ = kBehindBreak * duration();
     o.first = std::min(o.largest, behind_break_);
     if (options_.step == 0.0 && fastest > 0.0) o.first = std::min(o.first, kChosenStep / fastest);
+    behind_jump_ = o.first;
     // The embedded formulas of the methods of high order are one order lower.
     if (scheme.tableau && scheme.tableau->e.size() > 0 && o.order > 2) --o.order;
     control_.emplace(system_, o);
@@ -191,10 +192,16 @@ class Run final : public StepMotion {
       *next_ = *now_;
       controls_->sample(equation_.assembler(), now_->state);
       stepper_->start(*now_);
-      if (control_) control_->at_most(behind_break_);
+      if (control_) control_->at_most(jumps(next_->state.a, now_->state.a) ? behind_jump_ : behind_break_);
       energy_->restart(*next_, *now_);
       for (Observer* o : observers_) o->restart(equation_.assembler(), *now_);
     }
+  }
+
+  /// Whether fast modes begin anew, which a long step would carry on in its polynomial.
+  static bool jumps(const Vector& before, const Vector& after) {
+    constexpr double kJump = 1e-3;  // of the largest acceleration
+    return (after - before).lpNorm<Eigen::Infinity>() > kJump * after.lpNorm<Eigen::Infinity>();
   }
 
   auto halved_step() {
@@ -325,7 +332,7 @@ class Run final : public StepMotion {
         if (const double t = o->next_stop(last->state.t); t > last->state.t) wanted = std::min(wanted, t);
       if (!(wanted < next_->state.t)) break;
       EvaluatedState& point = last == &inside_[0] ? inside_[1] : inside_[0];
-      StepPolynomial(now_->state, next_->state, h, options_.scheme.order())
+      StepPolynomial(now_->state, next_->state, h, StepPolynomial::degree_for(options_.scheme))
           .at((wanted - now_->state.t) / h, point.state);
       point.state.t = wanted;
       assembler.set_time(wanted);
@@ -378,6 +385,7 @@ class Run final : public StepMotion {
   long coarse_solves_ = 0;
   double energy_floor_ = 0.0;                                      // J
   double behind_break_ = std::numeric_limits<double>::infinity();  // s
+  double behind_jump_ = std::numeric_limits<double>::infinity();   // s
   int failures_ = 0, changes_here_ = 0, energy_tries_ = 0;
 };
 

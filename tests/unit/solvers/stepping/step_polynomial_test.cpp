@@ -1,4 +1,4 @@
-// The motion inside a step: polynomials of degree 3 and 5 are reproduced.
+// The motion inside a step: polynomials of degree 3, 4 and 5 are reproduced.
 #include "solvers/stepping/step_polynomial.hpp"
 
 #include <array>
@@ -30,18 +30,18 @@ State state_at(double t, int terms) {
 
 TEST_CASE("The motion inside a step reproduces polynomials of its own degree") {
   const double t_0 = 0.4, h = 0.5;
-  for (const bool quintic : {false, true}) {
-    const int terms = quintic ? 6 : 4, order = quintic ? 4 : 2;
+  for (const int degree : {3, 4, 5}) {
+    const int terms = degree + 1;
     const State from = state_at(t_0, terms), to = state_at(t_0 + h, terms);
-    const StepPolynomial polynomial(from, to, h, order);
+    const StepPolynomial polynomial(from, to, h, degree);
     for (const double s : {0.0, 0.2, 0.5, 0.9, 1.0}) {
-      CAPTURE(quintic, s);
+      CAPTURE(degree, s);
       State inside = from;
       polynomial.at(s, inside);
       const State expected = state_at(t_0 + s * h, terms);
       CHECK(inside.z[0] == Approx(expected.z[0]).epsilon(1e-13));
       CHECK(inside.v[0] == Approx(expected.v[0]).epsilon(1e-13));
-      if (quintic) CHECK(inside.a[0] == Approx(expected.a[0]).epsilon(1e-12));
+      if (degree == 5) CHECK(inside.a[0] == Approx(expected.a[0]).epsilon(1e-12));
     }
   }
 }
