@@ -317,7 +317,7 @@ TEST_CASE("Two runs do not write one file") {
   CHECK(contains(second.err, "another process, or another output of this command, is writing it"));
 }
 
-TEST_CASE("An export onto a full disk says why it failed and leaves no file") {
+TEST_CASE("An export onto a full disk says why it failed and leaves no file", "[once]") {
   const drev::test::TemporaryFolder folder;
   for (const std::string name : {"c.toml", "c.fmu"}) {
     const auto full = drev_command(

@@ -285,7 +285,7 @@ TEST_CASE("Orders of narrow loads, wherever they stand in two turns, are their i
                 .torque;
         mean += torque / kPoints;
         for (std::size_t k = 0; k < orders.size(); ++k)
-          sums[k] += std::polar(2.0 * torque / kPoints, -orders[k] * angle);
+          sums[k] += (2.0 * torque / kPoints) * std::polar(1.0, -orders[k] * angle);
       }
       INFO(&system - systems.data() << ", " << speed);
       CHECK(found.mean == Approx(mean).epsilon(1e-4));
