@@ -22,6 +22,7 @@ ComplexStiffnesses::ComplexStiffnesses(const System& system, std::vector<bool> u
       term_held_(system.frequency_terms().size(), false),
       term_constant_(term_held_) {
   if (count() == 0) return;
+  used.resize(held_.size());
   find_slots();
   Vector damping, stiffness;
   const Assembler assembler(system);

@@ -15,8 +15,8 @@ namespace drev {
 
 class ComplexStiffnesses {
  public:
-  /// used: the unknowns, one flag each, that something else than a matrix acts on or looks at, and that stay therefore.
-  ComplexStiffnesses(const System& system, std::vector<bool> used);
+  /// used: the unknowns, one flag each, that something else than a matrix, law or load looks at, and that stay therefore; empty: none.
+  explicit ComplexStiffnesses(const System& system, std::vector<bool> used = {});
 
   std::size_t count() const { return term_held_.size(); }
   /// The unknowns at rest, one flag each: internal nodes of elements that know k* without them, if no other element acts on these.

@@ -15,7 +15,6 @@ using Complex = std::complex<double>;
 constexpr int kMostSteps = 25;
 constexpr double kPairSettled = 1e-12;  // last change of lambda relative to lambda [-]
 constexpr double kSameShape = 1e-6;     // part of N that is rounding where modes coincide [-]
-constexpr double kSameMode = 1e-9;      // relative difference of lambda of one and the same mode [-]
 
 /// The product A x, with A given by its values on the pattern.
 Eigen::VectorXcd pair_product(const SparseMatrix& pattern, const Vector& values, const Eigen::VectorXcd& x) {
@@ -27,6 +26,12 @@ Eigen::VectorXcd pair_product(const SparseMatrix& pattern, const Vector& values,
 }
 
 }  // namespace
+
+Eigen::VectorXcd lambda_of(const DampedModeSet& set) {
+  Eigen::VectorXcd lambda(static_cast<Eigen::Index>(set.modes.size()));
+  for (Eigen::Index m = 0; m < lambda.size(); ++m) lambda[m] = set.modes[static_cast<std::size_t>(m)].lambda;
+  return lambda;
+}
 
 DampedPairs::DampedPairs(const System& system, const std::vector<bool>& held)
     : pattern_(system.pattern()), mass_(system.mass_values()), elimination_(system.pattern(), held) {}

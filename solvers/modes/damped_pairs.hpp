@@ -14,6 +14,7 @@
 /// Source: P. Lancaster, Lambda-matrices and Vibrating Systems, Pergamon, 1966, section 7.3 (generalised Rayleigh
 /// quotients), section 4.3 (residues).
 #include <drev/core/system.hpp>
+#include <drev/solvers/modes/damped_modes.hpp>
 
 #include <complex>
 #include <functional>
@@ -36,8 +37,12 @@ struct DampedPole {
   Eigen::MatrixXcd shapes;  ///< over the unknowns
 };
 
+/// The lambda of a set's modes, as DampedPairs takes them.
+Eigen::VectorXcd lambda_of(const DampedModeSet& set);
+
 class DampedPairs {
  public:
+  static constexpr double kSameMode = 1e-9;  ///< relative difference of lambda of one and the same mode [-]
   /// held: unknowns at rest, one flag each; empty: none.
   explicit DampedPairs(const System& system, const std::vector<bool>& held = {});
   /// matrices: of a mode of frequency omega > 0 [rad/s]. lambda [1/s], Im > 0, and shape over the unknowns: a guess in, the

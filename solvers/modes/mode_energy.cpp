@@ -26,7 +26,7 @@ void normalise(Shares& shares) {
 /// What k* of elements is beyond their matrices, at the frequency of each mode.
 void add_complex_stiffnesses(const System& system, const DampedModeSet& modes, ModeEnergy& energy) {
   const std::vector<FrequencyTerm>& terms = system.frequency_terms();
-  const ComplexStiffnesses stiffnesses(system, std::vector<bool>(idx(system.size()), false));
+  const ComplexStiffnesses stiffnesses(system);
   for (std::size_t t = 0; t < terms.size(); ++t)
     for (Eigen::Index j = 0; j < modes.shapes.cols(); ++j) {
       std::complex<double> deflection = 0.0;

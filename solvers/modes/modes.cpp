@@ -212,7 +212,7 @@ ModeSet solve_modes(const System& system, const ModesOptions& options) {
 
 int elastic_mode_count(const System& system, Contact contact) {
   if (const auto tied = tied_system(system)) return elastic_mode_count(tied->system, contact);
-  const ComplexStiffnesses stiffnesses(system, std::vector<bool>(idx(system.size()), false));
+  const ComplexStiffnesses stiffnesses(system);
   const auto held = std::count(stiffnesses.held().begin(), stiffnesses.held().end(), true);
   return system.size() - static_cast<int>(held) - system.rigid_mode_count(contact);
 }

@@ -50,7 +50,7 @@ ModeSet modes_at_own_frequency(const System& system, const ModesOptions& options
   constexpr double kSteepest =
       0.9;  // slope of the frequency found by the one assumed from which no secant is taken [-]
   constexpr int kMostSteps = 100;
-  const ComplexStiffnesses stiffnesses(system, std::vector<bool>(idx(system.size()), false));
+  const ComplexStiffnesses stiffnesses(system);
   ModesOptions at_one = options;
   at_one.in_time = true;
   const auto modes_at = [&](double omega) {
@@ -89,7 +89,7 @@ ModeSet modes_at_own_frequency(const System& system, const ModesOptions& options
 }
 
 DampedModeSet damped_modes_at_own_frequency(const System& system, const DampedModesOptions& options) {
-  const ComplexStiffnesses stiffnesses(system, std::vector<bool>(idx(system.size()), false));
+  const ComplexStiffnesses stiffnesses(system);
   DampedModeSet set =
       solve_damped_modes(spring_system(system, stiffnesses, kStill, options.damping),
                          {.contact = options.contact, .size_limit = options.size_limit, .in_time = true});
@@ -113,8 +113,7 @@ DampedModeSet damped_modes_at_own_frequency(const System& system, const DampedMo
         its_loss, its_stiffness);
     return {damping, its_stiffness, its_loss};
   };
-  Eigen::VectorXcd lambda(set.vectors.cols());
-  for (Eigen::Index m = 0; m < lambda.size(); ++m) lambda[m] = set.modes[static_cast<std::size_t>(m)].lambda;
+  Eigen::VectorXcd lambda = lambda_of(set);
   if (!pairs.take_all_on(matrices, std::numeric_limits<double>::infinity(), {}, lambda, set.vectors))
     throw SolverError("damped modes of " + system.name() +
                       ": a mode was lost between the stiffness of couplings without loss and that with it");

@@ -19,7 +19,6 @@ namespace {
 constexpr int kMostUnknowns = 400;   // unknowns up to which damped modes are dense; beyond, one by one
 constexpr int kFirstModes = 16;      // number of undamped modes that are found first
 constexpr int kMostModes = 128;      // largest number of undamped modes that are found
-constexpr double kSameMode = 1e-9;   // relative difference of lambda of one and the same mode [-]
 constexpr int kModeSpeeds = 9;       // number of speeds for modes if loads depend on the speed
 constexpr int kMostModeSpeeds = 33;  // largest number with those at which their damping bends
 constexpr double kOneSpeed = 1e-10;  // relative difference of speeds that are one but for rounding [-]
@@ -311,8 +310,7 @@ SweepModes follow_modes(const System& system, LinearResponse& response, const st
   for (Eigen::Index i = 0; i < modes.speeds.size(); ++i) {
     pause();
     DampedModeSet set = solve_damped_modes(system, {.damping = load_damping(system, modes.speeds[i])});
-    Eigen::VectorXcd found(set.vectors.cols());
-    for (Eigen::Index m = 0; m < found.size(); ++m) found[m] = set.modes[static_cast<std::size_t>(m)].lambda;
+    Eigen::VectorXcd found = lambda_of(set);
     if (response.follows_mean_torque()) {
       if (!poles.pairs.take_all_on(path_at(response, modes.speeds[i]), highest, pause, found, set.vectors))
         sweep.modes_note =
@@ -379,8 +377,9 @@ SweepModes follow_pairs(const System& system, LinearResponse& response, const st
       if (!settled) continue;
       found[mode] = lambda;
       if (steps == 1) last[m] = lambda, shapes[m] = shape;
-      const bool known =
-          ((modes.lambda.col(i).head(mode).array() - lambda).abs() < kSameMode * std::abs(lambda)).any();
+      const bool known = ((modes.lambda.col(i).head(mode).array() - lambda).abs() <
+                          DampedPairs::kSameMode * std::abs(lambda))
+                             .any();
       if (!known) modes.lambda(mode, i) = lambda;
     }
     Growth here;
