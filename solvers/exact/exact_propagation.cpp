@@ -199,7 +199,7 @@ class ExactRun final : public StepMotion {
     if (end.change) pass(*end.change, t_new);
     if (!ahead_of_break) {
       expansion_.return_to(s, look_.state);
-      known_.advance(t_new, to.z, to.v, s == 1.0 || expansion_.sweeps());
+      if (s > 0.0) known_.advance(t_new, to.z, to.v, s == 1.0 || expansion_.sweeps());
       if (end.at_knot) {
         known_.pass_knot();
         count_change(known_.knot_element(), t_new);

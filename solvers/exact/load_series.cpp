@@ -105,6 +105,7 @@ void LoadSeries::advance(double t, const Vector& z, const Vector& v, bool whole)
 }
 
 void LoadSeries::pass_knot() {
+  tried_ = 0.0;
   for (StraightLoads::Load& l : straight_.loads())
     if (&l == leaving_) straight_.look_up(l, t_, leaving_direction_);
   for (ExpandedLoads::Load& l : expanded_.loads())

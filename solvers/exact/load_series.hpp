@@ -31,8 +31,9 @@ class LoadSeries {
   /// Moves to a state: known motions at t, and each load's stretch ahead of its angle. At the start
   /// and after breakpoints.
   void locate(double t, const Vector& z, const Vector& v);
-  /// Moves to a state further on in the step. whole: it is the end of what was projected last, where loads
-  /// are on the stretch that they came to.
+  /// Moves to a state further on in the step; not to where they stand: there, loads at rest on a knot keep the side to which
+  /// pass_knot() has put them. whole: it is the end of what was projected last, where loads are on the stretch that they
+  /// came to.
   void advance(double t, const Vector& z, const Vector& v, bool whole);
 
   /// Takes over where loads of the same system were located.

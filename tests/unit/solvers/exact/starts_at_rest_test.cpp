@@ -68,6 +68,17 @@ TEST_CASE("A cubic cam at rest on a knot beside a torque that is called") {
   check_end(m, 0.2, {0.10569411259927432, 0.09669577272925851}, {1.0769626573833964, 0.9761146506010927});
 }
 
+TEST_CASE("Two cubic cams at rest on a knot each leave it to the side to which the motion goes") {
+  Model m = discs({{"a", 1.0}, {"b", 1.0}});
+  m.add<ShaftSpring>("s", {"a", "b"}, {.stiffness = 1000.0});
+  m.add<AppliedTorque>("t", {"a"}, {.table = TimeTable({0.0}, {10.0})});
+  for (const char* node : {"a", "b"})
+    m.add<CamTorque>(std::string("cam_") + node, {node},
+                     {.angle_table = {{0.0, deg(90), deg(180), deg(270)}, {0.0, 10.0, 0.0, -10.0}},
+                      .interpolation = Interpolation::cubic});
+  check_end(m, 0.2, {0.10793708106000588, 0.09850874475182486}, {1.1187612876544495, 1.010936374186733});
+}
+
 TEST_CASE("A train that stands still at an angle has no energy but rounding") {
   const auto run = [](double twist) {
     Model m = discs({{"a", 0.1}, {"b", 1.0}, {"c", 1.0}});
