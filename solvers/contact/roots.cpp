@@ -53,16 +53,28 @@ double bracketed_root(std::span<const double> g, double low, double high, double
 
 class Search {
  public:
-  Search(std::span<const double> g, double end) : g_(g), smallest_(kSmallestRadius * end) {
-    double power = 1.0;
-    for (std::size_t k = 2; k < g.size(); ++k, power *= end)
-      curvature_ += static_cast<double>(k * (k - 1)) * std::abs(g[k]) * power;
+  Search(std::span<const double> g, double end) : g_(g), smallest_(kSmallestRadius * end) {}
+
+  std::optional<double> first(double end) const { return first(0.0, end, bound(end)); }
+
+ private:
+  /// Of |g''| on [0, reach].
+  struct Bound {
+    double reach, curvature;
+  };
+  static constexpr double kCloser = 0.25;  // part of a bound's reach in which a closer one is found
+
+  Bound bound(double reach) const {
+    double power = 1.0, curvature = 0.0;
+    for (std::size_t k = 2; k < g_.size(); ++k, power *= reach)
+      curvature += static_cast<double>(k * (k - 1)) * std::abs(g_[k]) * power;
+    return {reach, curvature};
   }
 
-  std::optional<double> first(double low, double high) const {
+  std::optional<double> first(double low, double high, const Bound& most) const {
     const double c = 0.5 * (low + high), r = 0.5 * (high - low);
     const auto [value, slope] = polynomial_at(g_, c);
-    const double bend = curvature_ * r;
+    const double bend = most.curvature * r;
     if (std::abs(value) > std::abs(slope) * r + 0.5 * bend * r) {
       if (value < 0.0) return low;  // it fell below at the very start
       return std::nullopt;
@@ -72,16 +84,16 @@ class Search {
       if (slope > 0.0) return at_low < 0.0 && low > 0.0 ? std::optional(low) : std::nullopt;
       const double at_high = polynomial_value(g_, high);
       if (at_high >= 0.0) return std::nullopt;
-      return at_low < 0.0 ? low : bracketed_root(g_, low, high, at_low, at_high, curvature_);
+      return at_low < 0.0 ? low : bracketed_root(g_, low, high, at_low, at_high, most.curvature);
     }
     if (r <= smallest_) return polynomial_value(g_, high) < 0.0 ? std::optional(c) : std::nullopt;
-    if (const auto left = first(low, c)) return left;
-    return first(c, high);
+    // A motion out of rest is as flat there as a high power: without closer bounds its halves would be without number.
+    if (const auto left = first(low, c, c <= kCloser * most.reach ? bound(c) : most)) return left;
+    return first(c, high, most);
   }
 
- private:
   std::span<const double> g_;
-  double smallest_, curvature_ = 0.0;
+  double smallest_;
 };
 
 }  // namespace
@@ -134,7 +146,7 @@ std::optional<double> first_crossing(std::span<const double> g, double end) {
   for (std::size_t k = 1; k < g.size(); ++k, power *= end)
     if (g[k] < 0.0) falling -= g[k] * power;
   if (g[0] > falling) return std::nullopt;
-  return Search(g, end).first(0.0, end);
+  return Search(g, end).first(end);
 }
 
 }  // namespace drev

@@ -2,8 +2,8 @@
 /// Polynomials on [0, end] by their coefficients g_0, g_1, ...: value, and the first crossing from
 /// g >= 0 to g < 0 with a certificate that none was missed.
 ///
-/// With B >= |g''| on [0, end] (B = sum k (k-1) |g_k| end^(k-2)), an interval of centre c and
-/// radius r
+/// With B >= |g''| on [0, b] (B = sum k (k-1) |g_k| b^(k-2)), b = end, or less for what lies near 0,
+/// an interval of centre c and radius r
 ///   has no root                if |g(c)| > |g'(c)| r + B r^2/2,
 ///   is monotone                if |g'(c)| > B r: its ends tell; safeguarded Newton finds it,
 ///   is halved                  otherwise, the left half first.

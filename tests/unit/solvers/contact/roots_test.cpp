@@ -70,6 +70,14 @@ TEST_CASE("First crossing: a double root is a graze, no crossing, a triple root 
   CHECK(*triple == Approx(0.5).epsilon(1e-4));
 }
 
+TEST_CASE("First crossing: from a start as flat as a high power, beside rounding") {
+  // s^9 (1 - 1.5 s) with what rounding leaves of its lowest terms: 1e9 intervals under one bound of the second derivative.
+  const auto s =
+      first_crossing(std::vector<double>{0.0, 1e-20, -1e-20, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.5}, 1.0);
+  REQUIRE(s.has_value());
+  CHECK(*s == Approx(2.0 / 3.0).epsilon(1e-13));
+}
+
 TEST_CASE("First crossing: two roots close together are not missed though both ends are positive") {
   for (const double apart : {1e-1, 1e-3, 1e-5, 1e-7}) {
     const auto s = first_crossing(with_roots({0.4, 0.4 + apart, 2.0}), 1.0);
