@@ -35,12 +35,11 @@ TaylorSeries::TaylorSeries(const System& system)
   } else {
     if (mass_.factorize(system.pattern(), system.mass_values()) != FactorStatus::success)
       throw SolverError(system.name() + ": the mass matrix is not positive definite");
-    Vector row_sum = Vector::Zero(n_);
+    inverse_mass_sum_.setZero(n_);
     for (int i = 0; i < n_; ++i) {
       mass_.solve(Vector::Unit(n_, i), solve_out_);
-      row_sum += solve_out_.cwiseAbs();
+      inverse_mass_sum_ += solve_out_.cwiseAbs();
     }
-    mass_norm_ = row_sum.maxCoeff();
   }
   std::vector<int> kinds(idx(n_), 0);
   for (int node = 0; node < system.node_count(); ++node)
@@ -213,16 +212,18 @@ void TaylorSeries::subtract_product(const LaneVector& values, bool main_only, co
 double TaylorSeries::bound_rates() {
   const int *outer = system_.pattern().outerIndexPtr(), *inner = system_.pattern().innerIndexPtr();
   k_norm_ = c_norm_ = coupling_ = 0.0;
+  const double most = diagonal_mass_ ? 0.0 : inverse_mass_sum_.maxCoeff();
   for (int row = 0; row < n_; ++row) {
+    const double moves = diagonal_mass_ ? mobility(row) : most;  // through M^-1 all rows act on each
     double k_sum = 0.0, c_sum = 0.0;
     for (int s = outer[row]; s < outer[row + 1]; ++s) {
       const double k = std::abs(k_.now[position_[idx(s)]]);
-      if (inner[s] != row) coupling_ = std::max(coupling_, k * mobility(row));
+      if (inner[s] != row) coupling_ = std::max(coupling_, k * moves);
       k_sum += k;
       c_sum += std::abs(c_.now[position_[idx(s)]]);
     }
-    k_norm_ = std::max(k_norm_, k_sum * mobility(row));
-    c_norm_ = std::max(c_norm_, c_sum * mobility(row));
+    k_norm_ = std::max(k_norm_, k_sum * moves);
+    c_norm_ = std::max(c_norm_, c_sum * moves);
   }
   // |lambda|^2 <= |lambda| c + k.
   k_norm_ = std::min(k_norm_, largest_eigenvalue(k_.now));

@@ -197,7 +197,7 @@ class TaylorSeries {
   /// Upper estimate of the acceleration of a row by a force on it [1/(kg m^2) or 1/kg].
   double mobility(int row) const {
     if (row >= n_) return row_mobility_[row - n_];
-    return diagonal_mass_ ? inverse_mass_[idx(row)] : mass_norm_;
+    return diagonal_mass_ ? inverse_mass_[idx(row)] : inverse_mass_sum_[row];
   }
   /// |k| between two unknowns over the first one's mass [1/s^2]; and a bound of all, as rate().
   double coupling(int row, int other) const;
@@ -302,7 +302,7 @@ class TaylorSeries {
   bool damped_ = false, main_damping_ = false, diagonal_mass_ = false;
   double k_norm_ = 0.0, c_norm_ = 0.0, k_more_ = 0.0, c_more_ = 0.0, coupling_ = 0.0;
   SparseCholesky mass_;
-  double mass_norm_ = 0.0;   // of M^-1, largest row sum, where M is not diagonal
+  Vector inverse_mass_sum_;  // of the sizes in each row of M^-1, where M is not diagonal
   LaneVector swept_;         // columns of the sweep behind two of zeros
   LaneVector swept_forces_;  // zeros between sweeps
   std::vector<std::int64_t, Eigen::aligned_allocator<std::int64_t>> packed_from_;
