@@ -60,7 +60,7 @@ struct SmoothLoads::Samples {
 };
 
 double SmoothLoads::beyond_tangent(const Place& l, const Samples& at, std::size_t q) const {
-  return at.torque[q] - l.torque - l.slope * at.turn[q];
+  return at.torque[q] - l.torque - l.slope * at.turn[q] - l.speed_slope * (at.rate[q] / h_ - l.speed);
 }
 
 /// Torque and slopes at the places s, where turn and rate are known.
@@ -104,7 +104,7 @@ double SmoothLoads::add_interval(Place& l, double from, double to, LegendreProje
       sum[idx(j + 1)] += now;
     }
     slope = std::max(slope, std::abs(at.slope[q] - l.slope));
-    speed_slope = std::max(speed_slope, std::abs(at.speed_slope[q]));
+    speed_slope = std::max(speed_slope, std::abs(at.speed_slope[q] - l.speed_slope));
   }
   for (int j = 0; j < kProjectionTerms; ++j)
     kinks.coefficient(j, l.row) += (2.0 * j + 1.0) * length * l.coeff * sum[idx(j)];
@@ -214,7 +214,7 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   for (std::size_t q = 0; q < kNodes; ++q) {
     forces.at(q, l.row) += l.coeff * beyond_tangent(l, at, q);
     slope = std::max(slope, std::abs(at.slope[q] - l.slope));
-    speed_slope = std::max(speed_slope, std::abs(at.speed_slope[q]));
+    speed_slope = std::max(speed_slope, std::abs(at.speed_slope[q] - l.speed_slope));
   }
   return l.feedback ? 0.5 * h_ * h_ * slope + h_ * speed_slope : 0.0;
 }

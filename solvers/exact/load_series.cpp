@@ -367,7 +367,7 @@ double LoadSeries::work(TaylorSeries& series, double s, const Vector& end) {
     projected_ = false;
   }
   const double sum = series.work(p_.data(), degree_, s) + expanded_.work(series, s);
-  return sum + straight_.slope_work(series, end) + smooth_.slope_work(series, end);
+  return sum + straight_.slope_work(series, end) + smooth_.slope_work(series, s, end);
 }
 
 }  // namespace drev

@@ -31,12 +31,15 @@ void SmoothLoads::move(const Assembler& assembler, const Vector& z, const Vector
   t_ = assembler.time();
   const MotionPoint& nominal = assembler.nominal();
   nominal_ = nominal.value;
+  nominal_rate_ = nominal.rate;
   find_loads(nominal);
   for (Place& l : loads_) {
     l.move(system_, nominal, z, v);
     const LoadResponse r = assembler.load(*l.term, z, v);
     l.torque = r.torque;
     l.slope = l.feedback ? r.dtorque_dangle : 0.0;
+    l.speed_slope =
+        l.feedback && l.row < system_.size() && std::isfinite(r.dtorque_dspeed) ? r.dtorque_dspeed : 0.0;
     if (l.knots != nullptr) l.follow(l.angle, l.speed, l.ratio * nominal.rate);
   }
 }
@@ -44,6 +47,7 @@ void SmoothLoads::move(const Assembler& assembler, const Vector& z, const Vector
 void SmoothLoads::move_as(const SmoothLoads& other) {
   t_ = other.t_;
   nominal_ = other.nominal_;
+  nominal_rate_ = other.nominal_rate_;
   loads_ = other.loads_;
   found_ = other.found_;
   constant_ = other.constant_;
@@ -56,7 +60,7 @@ void SmoothLoads::add_to(double h, const std::array<double, 3>& phi, double* p) 
 }
 
 void SmoothLoads::add_slopes(TaylorSeries& series) const {
-  for (const Place& l : loads_) l.add_slopes(series, 0.0);
+  for (const Place& l : loads_) l.add_slopes(series, l.ratio * nominal_rate_);
 }
 
 SmoothLoads::Point SmoothLoads::look(const Place& l, double s, double along, double rate,
@@ -69,7 +73,8 @@ SmoothLoads::Point SmoothLoads::look(const Place& l, double s, double along, dou
                      .speed = nominal_speed + l.coeff * rate,
                      .nominal_speed = nominal_speed};
   r = l.term->load->evaluate(in);
-  const double tangent = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
+  double tangent = l.slope == 0.0 ? 0.0 : l.slope * (l.ratio * turn + deviation - l.deviation);
+  if (l.speed_slope != 0.0) tangent += l.speed_slope * (in.speed - l.speed);
   return {s, in.nominal_angle + deviation, in.speed, l.coeff * (r.torque - l.torque - tangent), r.torque};
 }
 
@@ -180,8 +185,8 @@ double SmoothLoads::differ_called(Place& l, const TaylorSeries& series, NodeForc
     LoadResponse r;
     const Point& p = l.points[q + 1] = look(l, rule.s[q], path_[at], rate_[at], r);
     if (l.feedback)
-      gain = std::max(gain,
-                      0.5 * h_ * h_ * std::abs(r.dtorque_dangle - l.slope) + h_ * std::abs(r.dtorque_dspeed));
+      gain = std::max(gain, 0.5 * h_ * h_ * std::abs(r.dtorque_dangle - l.slope) +
+                                h_ * std::abs(r.dtorque_dspeed - l.speed_slope));
     l.rounding = std::max(
         l.rounding, kTorqueRounding * std::abs(l.coeff) *
                         (std::abs(r.torque) + std::abs(r.dtorque_dangle) * std::max(1.0, std::abs(p.angle)) +
@@ -238,11 +243,21 @@ double SmoothLoads::project(const TaylorSeries& series, bool first, LegendreProj
   return contraction;
 }
 
-double SmoothLoads::slope_work(const TaylorSeries& series, const Vector& end) const {
+double SmoothLoads::slope_work(const TaylorSeries& series, double s, const Vector& end) {
   double sum = 0.0;
   for (const Place& l : loads_) {
     const double turn = l.coeff * (l.along(system_, end) - series.coefficient(0, l.row));
     sum += 0.5 * l.slope * turn * turn;
+    if (l.speed_slope == 0.0) continue;
+    turn_.resize(idx(series.degree()) + 1);
+    for (int k = 0; k <= series.degree(); ++k) turn_[idx(k)] = l.coeff * series.coefficient(k, l.row);
+    NodeValues deviation;
+    find_at_nodes(turn_, s, deviation);
+    const double first = l.speed - l.ratio * nominal_rate_;
+    for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
+      const double rate = deviation.slope[q] / h_;
+      sum += h_ * s * gauss_rule().weight[q] * l.speed_slope * (rate - first) * rate;
+    }
   }
   return sum;
 }

@@ -47,7 +47,7 @@ class SmoothLoads {
 
   /// Adds the tangents along the nominal angle's terms phi to p, degree k at p + k stride.
   void add_to(double h, const std::array<double, 3>& phi, double* p);
-  /// Adds the tangents' slopes to the stiffness, and what they take from the right side.
+  /// Adds the tangents' slopes to stiffness and damping, and what they take from the right side.
   void add_slopes(TaylorSeries& series) const;
   /// The motion at Gauss's nodes, for project(); returns the scales of the motion with it.
   std::array<TaylorSeries::Norm, 2> follow(const TaylorSeries& series) {
@@ -94,8 +94,8 @@ class SmoothLoads {
   void for_rows(const Judge& judge) const {
     for (const Place& l : loads_) judge(l.row, l.off_at_ends, l.feedback);
   }
-  /// Work of the tangents' slopes on the unknowns over a part of the step, at whose end they stand [J].
-  double slope_work(const TaylorSeries& series, const Vector& end) const;
+  /// Work of the tangents' slopes on the unknowns over the step to s, at whose end they stand [J].
+  double slope_work(const TaylorSeries& series, double s, const Vector& end);
 
  private:
   /// A called load at s of the step, on the series' path.
@@ -147,7 +147,7 @@ class SmoothLoads {
   NodeForces forces_, known_;              // differences, and those of loads that follow no motion
   std::vector<double> path_, rate_;        // by node, then row
   std::array<double, 3> phi_{};
-  double t_ = 0.0, h_ = 0.0, nominal_ = 0.0;
+  double t_ = 0.0, h_ = 0.0, nominal_ = 0.0, nominal_rate_ = 0.0;
 };
 
 }  // namespace drev
