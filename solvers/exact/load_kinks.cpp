@@ -136,7 +136,7 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, Way& way, double rate, double end,
     if (projected) {
       const double inside =
           kKinkInside * std::abs(l.coeff * way.chord() * rate) * relative_move(series, l.row);
-      l.watched = inside > kMostInside;
+      l.watched = inside > kMostInside && !of_part_;
       if (l.watched) break;
       kinks_inside_ = std::max(kinks_inside_, inside);
     }
@@ -153,7 +153,8 @@ bool LoadSeries::list_kinks_of(PlacedLoad& l, Way& way, double rate, double end,
 }
 
 /// Lists the kinks that loads pass up to s = to in kinks_; ranges_ holds how far the unknowns come. projected: a kink
-/// that leaves too much inside the step ends it. False: some angle may turn back in the step, or leave it at such a kink.
+/// that leaves too much inside the step ends it. False: some angle may turn back in the step, or leave it at such a kink. In a
+/// part of a step that holds none does, whatever the bounds say of its series: with projected kinks they are loose.
 bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projected) {
   listed_before_ += kinks_.count();
   if (listed_before_ > kMostListed) {
@@ -168,7 +169,7 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
   const double *turns = ranges_.data(), *sizes = turns + stride_, *bends = sizes + stride_;
   for (const StraightLoads::Near& near : straight_.near_knots(series, to, phi_, turns)) {
     StraightLoads::Load& l = straight_.load_of(near);
-    if (!near.monotone) {
+    if (!near.monotone && !of_part_) {
       l.watched = true;
       all = false;
       continue;
@@ -196,8 +197,8 @@ bool LoadSeries::list_kinks(const TaylorSeries& series, double to, bool projecte
       const double reach = ratio * (std::abs(phi_[1]) + std::abs(phi_[2])) + feedback * sizes[row];
       if (l.angle + reach < l.piece.high && l.angle - reach > l.piece.low) continue;
       const double rate = angle_term(l, series, 1);
-      l.watched =
-          2.0 * ratio * std::abs(phi_[2]) + feedback * bends[row] > KinkSizes::kMonotone * std::abs(rate);
+      l.watched = !of_part_ && 2.0 * ratio * std::abs(phi_[2]) + feedback * bends[row] >
+                                   KinkSizes::kMonotone * std::abs(rate);
       if (l.watched) {
         all = false;
         continue;

@@ -92,6 +92,7 @@ void LoadSeries::locate(double t, const Vector& z, const Vector& v) {
 }
 
 void LoadSeries::locate_as(const LoadSeries& other) {
+  of_part_ = true;
   t_ = other.t_;
   assembler_.set_time(t_);
   straight_.move_as(other.straight_);

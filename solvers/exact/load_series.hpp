@@ -36,7 +36,7 @@ class LoadSeries {
   /// came to.
   void advance(double t, const Vector& z, const Vector& v, bool whole);
 
-  /// Takes over where loads of the same system were located.
+  /// Takes over where loads of the same system were located, for a part of their step: of kinks, it ends at none.
   void locate_as(const LoadSeries& other);
 
   /// Adds the right side over a step of h seconds and the loads' tangents.
@@ -193,6 +193,7 @@ class LoadSeries {
   int listed_before_ = 0;       // in listings before this one
   bool shared_rows_ = false;
   bool projected_ = false, with_laws_ = false;
+  bool of_part_ = false;  // of another one's step
   std::array<double, 3> phi_{};
   std::vector<std::array<double, 3>> u_;
   std::vector<double> power_;

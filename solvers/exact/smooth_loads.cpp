@@ -94,6 +94,20 @@ class SmoothLoads::Between {
     return of_.look(load_, s, along, rate / of_.h_, r);
   }
 
+  /// Looks where angle or speed turn back between the points: a kink may stand there, beyond all of them.
+  void look_at_turns() {
+    const auto& p = load_.points;
+    for (const auto of : {&Point::angle, &Point::speed})
+      for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+        const double before = (p[i].*of - p[i - 1].*of) / (p[i].s - p[i - 1].s),
+                     behind = (p[i + 1].*of - p[i].*of) / (p[i + 1].s - p[i].s);
+        if (!(before * behind < 0.0)) continue;
+        // The rates of a parabola through the three points.
+        const double part = before / (before - behind);
+        take(look(0.5 * (p[i].s + (1.0 - part) * p[i - 1].s + part * p[i + 1].s)));
+      }
+  }
+
   /// Looks wherever the load may do what the nodes do not show. False: nobody knows what it may do.
   bool divides() {
     const std::optional<double> may = bound(load_.points);
@@ -211,6 +225,7 @@ void SmoothLoads::look_between(const TaylorSeries& series) {
   for (Place& l : loads_) {
     if (l.knots != nullptr && !l.is_called()) continue;
     Between between(*this, l, series);
+    if (l.feedback) between.look_at_turns();
     if (!between.divides()) {
       if (!std::exchange(found, true)) series.at_places(kPlaces, places.data(), path_.data(), rate_.data());
       between.take(between.look(0.5 * gauss_rule().s[0]));

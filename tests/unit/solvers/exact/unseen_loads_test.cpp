@@ -221,3 +221,50 @@ TEST_CASE("A stop of a law that does not say where it kinks is met wherever the 
       CHECK(after(m, t_end, 1e-10, 1000).z[0] == Approx(x).margin(2e-8));
     }
 }
+
+TEST_CASE("A torque curve whose point the speed passes there and back between two looks") {
+  // n0 comes 0.06 rpm over 1000 rpm, where the curve is eight times as steep, within one step.
+  Model m("motor");
+  m.add_node("n0");
+  m.add_node("n1");
+  m.add<Inertia>("J0", {"n0"}, {.inertia = 0.1});
+  m.add<Inertia>("J1", {"n1"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {"n0", "n1"}, {.stiffness = 1e5});
+  m.add<TorqueCurve>("motor", {"n0"},
+                     {.speeds = {rpm(0.0), rpm(1000.0), rpm(1450.0), rpm(1500.0), rpm(1550.0)},
+                      .torques = {120.0, 150.0, 260.0, 0.0, -260.0}});
+  for (const double tolerance : {1e-8, 1e-9, 1e-10, 1e-11}) {
+    INFO(tolerance);
+    const State state = after(m, 0.85, tolerance, 2000);
+    // SciPy's DOP853 at a relative tolerance of 1e-13, split at the curve's points.
+    const double within = std::max(1e-11, 3.0 * tolerance);
+    CHECK(state.v[0] == Approx(101.67484588194654).epsilon(within));
+    CHECK(state.v[1] == Approx(104.0102512539543).epsilon(within));
+  }
+}
+
+TEST_CASE("A motion between the ends of a step has its kinks where bounds of the series come to no end") {
+  Model m("two cams");
+  for (const char* node : {"n0", "n1", "n2"}) m.add_node(node);
+  m.set_reference("n0", run_up(0.0, rpm(1500.0), 0.0, 1.0));
+  m.set_initial("n1", 0.0, 100.0);
+  m.add<Inertia>("J0", {"n0"}, {.inertia = 10.0});
+  m.add<Inertia>("J1", {"n1"}, {.inertia = 10.0});
+  m.add<Inertia>("J2", {"n2"}, {.inertia = 1.0});
+  m.add<ShaftSpring>("shaft", {"n0", "n1"}, {.stiffness = 100.0, .damping = 1.0});
+  m.add<PolylineSpring>("spring", {"n1", "n2"},
+                        {.x = {deg(-6.0), deg(-1.0), 0.0, deg(1.0), deg(6.0)},
+                         .y = {-500.0, -50.0, 0.0, 50.0, 500.0},
+                         .damping = 1.0});
+  const PeriodicTable table({0.0, deg(90.0), deg(180.0), deg(270.0)}, {0.0, 50.0, 0.0, -50.0}, kTwoPi);
+  m.add<CamTorque>("smooth", {"n1"}, {.angle_table = table, .interpolation = Interpolation::cubic});
+  m.add<CamTorque>("straight", {"n0"}, {.angle_table = table});
+  const System s = m.build();
+  State state = State::initial(s);
+  Recorder recorder(s, {"n0.angle_rad", "n0.speed_rad_per_s", "n2.angle_rad"}, 0.575);
+  REQUIRE(propagate(s, {.tolerance = 1e-10, .t_end = 0.6}, state, {&recorder}).ok());
+  // SciPy's DOP853 at a relative tolerance of 1e-12 with steps of at most 2e-5 s.
+  CHECK(recorder.samples(0)[1] == Approx(-4.558793587852484).epsilon(1e-10));
+  CHECK(recorder.samples(1)[1] == Approx(-5.576400451949589).epsilon(1e-9));
+  CHECK(recorder.samples(2)[1] == Approx(7.652795875354345).epsilon(1e-10));
+}
