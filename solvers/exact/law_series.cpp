@@ -20,6 +20,7 @@ constexpr double kZero = 1e-13;
 constexpr double kFloor = 4e-15;
 // A deflection is clear of a bound, relative to the terms that it is summed from.
 constexpr double kClear = 1e-14;
+constexpr double kPastOff = 2.0;     // times as far as the motion is off the bound
 constexpr double kMostClear = 1e-3;  // largest distance from a change, relative to the step
 // A crossing that a motion beside the series moves by no more of the step, with slopes that differ by no more, is one.
 constexpr double kNearCrossing = 0.05, kAlike = 3.0;
@@ -352,8 +353,15 @@ double LawSeries::later(const Change& change, const double* y, const double* rat
 double LawSeries::clear_of_change(const Change& change, double s) const {
   const Law& law = laws_[idx(change.law)];
   const double rate = std::abs(polynomial_slope(series_of(law), s));
-  const double away =
-      std::min(rate > 0.0 ? kClear * size_of_term(change.law, 0) / rate : kMostClear, kMostClear);
+  double away = rate > 0.0 ? kClear * size_of_term(change.law, 0) / rate : kMostClear;
+  if (const int bound = s > 0.0 ? change.bound : law.root; bound >= 0) {
+    // Where forces are projected the step ends beside the bound by what it was cut too short or too long.
+    std::vector<double> g;
+    bound_series(law, current(idx(change.law)).bounds[idx(bound)], g);
+    const double off = std::abs(polynomial_value(g, s)), falls = std::abs(polynomial_slope(g, s));
+    if (off > 0.0) away += falls > 0.0 ? kPastOff * off / falls : kMostClear;
+  }
+  away = std::min(away, kMostClear);
   return s > 0.0 ? std::max(0.0, s - away) : away;
 }
 

@@ -5,6 +5,7 @@
 #include <drev/solvers/exact/exact_propagation.hpp>
 #include <drev/solvers/method.hpp>
 #include <drev/solvers/run/contact_statistics.hpp>
+#include <drev/solvers/run/peaks.hpp>
 
 #include <cmath>
 
@@ -137,6 +138,30 @@ TEST_CASE("A mass that falls on one flank: speed sqrt(2 g h), force m g + sqrt((
   const double weight = mass * g;
   check_all(r.front_force, 10, weight + std::sqrt(weight * weight + k * mass * v * v), 2e-5);
   CHECK(r.time_separated == Approx(10 * 2 * v / g).epsilon(1e-8));
+}
+
+TEST_CASE("A force that jumps where the contact is made is its largest, beside a load that is projected") {
+  // J x'' = A cos(w t) in the gap; the force at the flank, c x', decays behind it.
+  const double inertia = 2.0, c = 50.0, half = 0.5, x = 0.25, v = 5.0, load = 5.0, w = 2.0 * kTwoPi;
+  Model m("jump");
+  m.add_node("a");
+  m.add<Inertia>("J", {"a"}, {.inertia = inertia});
+  m.add<DeadBandCoupling>(
+      "c", {"a"},
+      {.stiffness = 10.0, .gap = 2.0 * half, .damping = c, .damping_law = MeshDamping::contact_only});
+  m.add<AppliedTorque>("load", {"a"}, {.harmonics = {{.order = 2.0, .amplitude = load}}});
+  m.set_initial("a", x, v);
+  const auto rate = [&](double t) { return v + load / (inertia * w) * std::sin(w * t); };
+  double made = 0.05;
+  for (int i = 0; i < 20; ++i)
+    made -= (x + v * made + load / (inertia * w * w) * (1.0 - std::cos(w * made)) - half) / rate(made);
+  const System system = m.build();
+  State state = State::initial(system);
+  Peaks peaks({find_channel(system, "c.torque_Nm")});
+  ContactStatistics contacts(system);
+  REQUIRE(propagate(system, {.t_end = 0.2}, state, {&peaks, &contacts}).ok());
+  CHECK(peaks.peaks()[0].max == Approx(c * rate(made)).epsilon(1e-9));
+  CHECK(contacts.records()[0].largest_force == Approx(c * rate(made)).epsilon(1e-9));
 }
 
 TEST_CASE("Equivalent mass of a contact: 1/(b^T M^-1 b), lumped and consistent") {
