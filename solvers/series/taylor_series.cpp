@@ -225,7 +225,6 @@ double TaylorSeries::bound_rates() {
     k_norm_ = std::max(k_norm_, k_sum * moves);
     c_norm_ = std::max(c_norm_, c_sum * moves);
   }
-  // |lambda|^2 <= |lambda| c + k.
   k_norm_ = std::min(k_norm_, largest_eigenvalue(k_.now));
   c_norm_ = std::min(c_norm_, largest_eigenvalue(c_.now));
   k_more_ = c_more_ = 0.0;
@@ -233,8 +232,8 @@ double TaylorSeries::bound_rates() {
 }
 
 double TaylorSeries::rate() const {
-  const double k = k_norm_ + k_more_, c = c_norm_ + c_more_;
-  return 0.5 * (c + std::sqrt(c * c + 4.0 * k));
+  const double c = c_norm_ + c_more_;
+  return std::max(std::sqrt(k_norm_ + k_more_), 0.5 * (c + std::sqrt(c * c + 4.0 * k_more_)));
 }
 
 void TaylorSeries::widen(int row, double k, double c) {

@@ -102,7 +102,9 @@ class TaylorSeries {
   void widen_damping(double rate) { c_more_ += rate; }
   /// Adds forces that act on every term, behind those added before. Owned by the caller.
   void act_through(TermForces* forces) { term_forces_.push_back(forces); }
-  /// Estimate from above of the fastest rate |lambda| with those [1/s].
+  /// Estimate from above of the fastest rate |lambda| with those [1/s]. Along a mode x, of mass x* M x = 1, lambda^2 + lambda c + k =
+  /// 0 with c = x* C x, k = x* K x: a pair has |lambda| = sqrt(k); a real root at most (|c| + sqrt(c^2 - 4 k))/2, which is |c| unless k < 0,
+  /// as slopes of loads may make it (F. Tisseur, K. Meerbergen, The quadratic eigenvalue problem, SIAM Rev. 43, 2001).
   double rate() const;
   /// P_k [N m or N] by rows. reset() sets P_0 ... P_2 to zero and the degree of the right side to 2; who
   /// sets a higher one, up to kProjectionDegree, has written all of those above.
