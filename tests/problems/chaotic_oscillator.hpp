@@ -1,6 +1,6 @@
 #pragma once
 /// x'' + 0.1 x' + dz(x) = 0.1 + 0.5 cos t, dz: dead zone of half width 1 and slope 1. Chaotic: largest
-/// Lyapunov exponent 0.10947 a unit of time; long-run statistics, by a separate program over 5000 periods:
+/// Lyapunov exponent 0.10947 a unit of time; long-run statistics and their standard errors, by a separate program over 5000 periods:
 /// mean 0.3926 +- 0.0039, standard deviation 0.9676 +- 0.0028, share of the time in the gap
 /// 0.5816 +- 0.0036, 1 % quantile -1.849 +- 0.009, 99 % quantile 1.996 +- 0.005.
 #include <drev/core/system.hpp>
