@@ -434,7 +434,7 @@ TEST_CASE("A train without a frequency or a speed of its own has the spectrum of
   CHECK(decoded<float>(spectra.at("channels")[0].at("amplitude").get<std::string>()).size() > 10);
 }
 
-TEST_CASE("The waterfall begins at two cycles a window: half order 0.5 is not shown at 0.25") {
+TEST_CASE("The waterfall begins at two cycles a window, so that order 0.5 is not shown at 0.25, too") {
   const TemporaryFolder folder;
   const std::string path = (folder / "up.toml").string(), out = (folder / "out").string();
   std::ofstream(path)
