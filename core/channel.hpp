@@ -79,6 +79,8 @@ class Channel {
   /// The scalar term whose force, or deflection, it is; else -1.
   int force_of() const { return kind_ == Kind::force ? index_ : -1; }
   int deflection_of() const { return kind_ == Kind::deflection ? index_ : -1; }
+  /// Of dry friction: its place in State::history; else -1.
+  int friction_place() const { return kind_ == Kind::friction ? index_ : -1; }
 
  private:
   friend class ChannelFinder;

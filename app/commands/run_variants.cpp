@@ -20,6 +20,7 @@
 #include "app/report/report_file.hpp"
 #include "app/report/report_page.hpp"
 #include "app/report/variants_report.hpp"
+#include "app/run/run_computation.hpp"
 #include "app/variants/ranks.hpp"
 #include "app/variants/variant_points.hpp"
 #include "app/variants/variant_table.hpp"
@@ -235,6 +236,7 @@ VariantStudy study_of(const CommandLine& line) {
     throw ModelError(std::vector<Finding>{{kCommandLine, "--settle", "", "",
                                            "of the model's [run] is for single runs: figures of a table are "
                                            "of the whole run; give --settle 0"}});
+  settle_method(request);
   return {std::move(request), std::move(*plan), line.list("--record").has_value()};
 }
 

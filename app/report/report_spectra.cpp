@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kFewest = 64;
 constexpr std::size_t kLines = 6000;  // largest number of lines of each channel in the page
 constexpr int kPeaks = 6;
+constexpr double kRoundingOfSamples = 1e-12;  // over the largest of them: a peak below is none
 
 /// The largest number up to n with the prime factors 2, 3, 5 only, for which the transform is fast.
 std::size_t fast_size(std::size_t n) {
@@ -101,8 +102,12 @@ Json spectra_object(const ReportHistory& history, double begin, double cycle, do
     const Spectrum all =
         spectrum(samples, dt, {.window = Window::hann, .drop_end_point = false, .remove_mean = true});
     Json peaks = Json::array();
-    for (const SpectrumPeak& peak : spectrum_peaks(all, kPeaks, 3.0 * line))
+    double largest = 0.0;
+    for (const double y : samples) largest = std::max(largest, std::abs(y));
+    for (const SpectrumPeak& peak : spectrum_peaks(all, kPeaks, 3.0 * line)) {
+      if (!(peak.amplitude > kRoundingOfSamples * largest)) break;
       peaks.push_back({{"frequency_Hz", peak.frequency_Hz}, {"amplitude", peak.amplitude}});
+    }
     channels.push_back({{"name", history.series()[s].name},
                         {"unit", history.series()[s].unit},
                         {"amplitude", base64(pooled(all.amplitude, lines, pool))},

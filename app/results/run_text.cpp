@@ -151,7 +151,10 @@ std::string impact_rows(const RunResult& r, double duration) {
     std::string line = "speed " + quantiles_text(k.speed(), c.speed_unit());
     if (k.force().count() > 0) line += "; force " + quantiles_text(k.force(), c.force_unit);
     text += "  " + pad_right(k.element, kLabel - 2) +
-            wrap(line + "; rattle index " + digits(k.rattle_index(duration), 3) + " W", kLabel);
+            wrap(line + (std::isfinite(k.impact_energy)
+                             ? "; rattle index " + digits(k.rattle_index(duration), 3) + " W"
+                             : "; no rattle index, both nodes are prescribed"),
+                 kLabel);
   }
   if (text.empty()) return {};
   return labelled("Impacts", "not exceeded in 50, 90 and 99 % of them; rattle index: impact power") + text;

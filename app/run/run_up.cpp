@@ -71,8 +71,10 @@ RunUpWatch::RunUpWatch(const System& full, const ModeSet* modes, const System& s
     const double highest = std::max(kUsualOrders, orders.empty() ? 0.0 : 1.25 * orders.back());
     double spacing = 0.5 * OrderTracking::kResolution / found_.turns;
     while (highest > kMostLines * spacing) spacing *= 2.0;
+    // A line of fewer cycles in a window would hold a part of its neighbours.
     std::vector<double> lines;
-    for (int i = 1; i * spacing <= highest; ++i) lines.push_back(i * spacing);
+    for (int i = 1; i * spacing <= highest; ++i)
+      if (i * spacing * found_.turns >= OrderTracking::kResolution) lines.push_back(i * spacing);
     waterfall_ =
         std::make_unique<OrderTracking>(system, channels, std::move(lines), found_.turns, inside, shaft.node);
   }

@@ -39,7 +39,9 @@ class RunStatistics {
     for (const BatchWatch::Contact& c : fine_.batches.contacts()) {
       add_statistic(c.element + ": share of time separated", "", batch_mean(c.share_separated, kBatches));
       add_statistic(c.element + ": impacts", "1/s", batch_mean(c.impacts_per_second, kBatches));
-      add_statistic(c.element + ": rattle index", "W", batch_mean(c.impact_power, kBatches));
+      if (std::all_of(c.impact_power.begin(), c.impact_power.end(),
+                      [](double p) { return std::isfinite(p); }))
+        add_statistic(c.element + ": rattle index", "W", batch_mean(c.impact_power, kBatches));
       add_statistic(c.element + ": mean force", c.unit, c.mean_force.estimate(kBatches));
       add_statistic(c.element + ": rms force", c.unit, c.rms_force.estimate(kBatches));
     }

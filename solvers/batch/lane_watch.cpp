@@ -40,7 +40,7 @@ LaneWatch::LaneWatch(const std::array<const System*, kLanes>& systems, const std
     Contact c;
     c.law = static_cast<int>(j);
     for (int lane = 0; lane < kLanes; ++lane) {
-      const Gap gap = systems[idx(lane)]->scalars()[j].force->gap().value_or(Gap{});
+      const Gap gap = beyond_rounding(systems[idx(lane)]->scalars()[j].force->gap().value_or(Gap{}));
       c.low.v[lane] = gap.low;
       c.high.v[lane] = gap.high;
       c.masses[idx(lane)] = masses[idx(lane)][j];

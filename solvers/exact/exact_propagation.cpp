@@ -107,6 +107,7 @@ class ExactRun final : public StepMotion {
   std::optional<int> side(int law) const override { return laws_.side(law); }
   std::optional<Range> force_range(int law) override { return expansion_.force_range(laws_, law, step_.s); }
   std::optional<Range> force_reach(int law) override { return expansion_.reach(laws_, law, now_, next_); }
+  std::optional<Range> friction_range(int at) const override { return friction_.torque_range(at, step_.s); }
   std::optional<Range> range(const std::vector<Entry>& z, const std::vector<Entry>& v) override {
     return expansion_.range(z, v, step_.s);
   }

@@ -7,6 +7,7 @@
 #include "solvers/contact/friction_complementarity.hpp"
 #include "solvers/contact/roots.hpp"
 #include "solvers/exact/friction_series.hpp"
+#include "solvers/run/cubic_peak.hpp"
 
 namespace drev {
 
@@ -21,6 +22,7 @@ constexpr double kSlack = 4.0;       // factor on the difference of two forces t
 constexpr double kLeast = 4e-15;
 // Part of the step within which the others outgrow a coefficient that is rounding.
 constexpr double kOutgrown = 1e-12;
+constexpr int kPlaces = 16;  // parts of a step in which a torque is taken for a cubic
 
 /// int_0^s a(s) b(s) ds.
 double integral_of_product(const std::vector<double>& a, const double* b, std::size_t terms_b, double s) {
@@ -32,6 +34,30 @@ double integral_of_product(const std::vector<double>& a, const double* b, std::s
       sum += a[j] * b[k] * s_k / static_cast<double>(j + k + 1);
   }
   return sum;
+}
+
+/// The range of a polynomial in [0, end]: of cubics between places, with how far it lies from them.
+StepMotion::Range range_along(const std::vector<double>& g, double end) {
+  double moves = 0.0, fourth = 0.0, power = end;
+  for (std::size_t k = 1; k < g.size(); ++k, power *= end) {
+    const double term = std::abs(g[k]) * power;
+    moves += term;
+    fourth += term * static_cast<double>(k * (k - 1)) * (static_cast<double>(k) - 2.0) *
+              (static_cast<double>(k) - 3.0);
+  }
+  if (g.empty() || moves == 0.0) return g.empty() ? StepMotion::Range{} : StepMotion::Range{g[0], g[0]};
+  const double part = end / kPlaces;
+  StepMotion::Range range{g[0], g[0], fourth / (384.0 * std::pow(kPlaces, 4))};
+  double y = g[0], slope = polynomial_slope(g, 0.0);
+  for (int i = 1; i <= kPlaces; ++i) {
+    const double y_1 = polynomial_value(g, part * i), slope_1 = polynomial_slope(g, part * i);
+    const Interval reach = cubic_reach(y, slope, y_1, slope_1, part);
+    range.low = std::min(range.low, reach.low);
+    range.high = std::max(range.high, reach.high);
+    y = y_1;
+    slope = slope_1;
+  }
+  return range;
 }
 
 }  // namespace
@@ -405,6 +431,27 @@ void FrictionSeries::write(double s, const Vector& start, Vector& history) const
     history[begin + FrictionHistory::kHeat] = start[begin + FrictionHistory::kHeat] + heat(contacts_[i], s);
     if (contacts_[i].tie >= 0) note_gear(i, polynomial_value(contacts_[i].slip, s), history);
   }
+}
+
+std::optional<StepMotion::Range> FrictionSeries::torque_range(int place, double s) const {
+  using History = FrictionHistory;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const FrictionTerm& term = system_.frictions()[i];
+    const int which = place - term.history_begin;
+    if (which < 0 || which >= History::size(*term.friction)) continue;
+    const std::vector<double>& own = contacts_[i].torque;
+    if (which == History::kTorque) return range_along(own, s);
+    if (which != History::kTorqueIn && which != History::kTorqueOut) break;
+    // Of a gear, as note_gear() has them.
+    const auto tie = idx(contacts_[i].tie);
+    std::vector<double> sum = contacts_[tie].torque;
+    if (which == History::kTorqueOut)
+      for (double& g : sum) g *= -system_.frictions()[tie].nodes.back().coeff;
+    else
+      for (std::size_t k = 0; k < std::min(sum.size(), own.size()); ++k) sum[k] += own[k];
+    return range_along(sum, s);
+  }
+  return std::nullopt;
 }
 
 }  // namespace drev

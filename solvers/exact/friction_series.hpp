@@ -22,6 +22,7 @@
 /// friction_complementarity.hpp)
 #include <drev/core/law/friction.hpp>
 #include <drev/solvers/run/evaluated_state.hpp>
+#include <drev/solvers/run/observer.hpp>
 #include <drev/solvers/run/run_summary.hpp>
 
 #include <algorithm>
@@ -93,6 +94,8 @@ class FrictionSeries final : public TermForces {
   void hold(const Assembler& assembler, Vector& v) const;
   /// Torques, states and heat at s of the step into a history that has those of its start.
   void write(double s, const Vector& start, Vector& history) const;
+  /// StepMotion::friction_range() up to s of the step, with no turns told.
+  std::optional<StepMotion::Range> torque_range(int place, double s) const;
   /// f += b lambda with the torques in a history.
   void add_forces(const Vector& history, Vector& f) const;
   /// From 0 to s of the step [J].

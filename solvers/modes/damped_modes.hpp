@@ -115,8 +115,9 @@ struct Settling {
   std::string reason;  ///< which motion takes the longest, or why not; a sentence without full stop
 };
 
-/// ln(1 / kSettledPart) times the largest time constant -1 / Re lambda of the damped modes, contacts closed, and
-/// of the rates of free parts that something drags on; a free rotation that nothing drags on carries no
+/// When what was let go from a deflection is down to kSettledPart, by the slowest of the damped modes, contacts closed, and
+/// of the rates of free parts that something drags on: ln(1 / kSettledPart) times the time constant -1 / Re lambda where
+/// eigenvalues are far apart, up to a third more where two are about one. A free rotation that nothing drags on carries no
 /// torque, and is left out. Of 400 unknowns at most: beyond, time is infinite and reason says so.
 Settling settling_time(const System& system);
 

@@ -25,7 +25,7 @@ struct ContactRecord : ContactTotals<double> {
   /// the start) or that still lasts (at the end) is not among them.
   Distribution front_force = {}, back_force = {};
   /// Sum of m_eq x'^2/2 over all impacts [J], m_eq = 1/(b^T M^-1 b): the energy of the relative motion that
-  /// the inertias beside the contact bring to it. 0 where a node beside it has no inertia.
+  /// the inertias beside the contact bring to it. 0 where a node beside it has no inertia, infinite between prescribed ones.
   double impact_energy = 0.0;
 
   long impacts() const { return front_impacts + back_impacts; }

@@ -34,7 +34,7 @@ std::vector<double> equivalent_masses(const System& system) {
       mass.solve(b, x);
       flexibility = b.dot(x);
     }
-    if (flexibility > 0.0) all[j] = 1.0 / flexibility;
+    all[j] = 1.0 / flexibility;
   }
   return all;
 }
@@ -170,8 +170,9 @@ void ContactStatistics::step(const Assembler& assembler, const EvaluatedState& f
       note_forces(i, assembler, from, to);
     } else {
       note_forces(i, assembler, from, to);
-      if (note_time_separated(record, gaps_[i].low, gaps_[i].high, a.x, b.x, h, true))
-        note_crossings(gaps_[i], a, b, end, masses_[i], interval, record);
+      const Gap gap = beyond_rounding(gaps_[i]);
+      if (note_time_separated(record, gap.low, gap.high, a.x, b.x, h, true))
+        note_crossings(gap, a, b, end, masses_[i], interval, record);
     }
     if (!forces_) continue;
     const Peak& peak = forces_->peaks()[i];

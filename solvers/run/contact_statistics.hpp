@@ -7,6 +7,8 @@
 #include <drev/solvers/run/contact_record.hpp>
 #include <drev/solvers/run/observer.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -19,7 +21,7 @@ class Assembler;
 class Peaks;
 struct EvaluatedState;
 
-/// m_eq of every law that is not linear [kg or kg m^2], in System::scalars(); 0 for the others.
+/// m_eq of every law that is not linear [kg or kg m^2], in System::scalars(), infinite between prescribed nodes; 0 for the others.
 std::vector<double> equivalent_masses(const System& system);
 
 /// The contact at hand: whether an impact began it, its largest |y| so far, and where the law was in the last step
@@ -60,6 +62,11 @@ template <class Number, class Value, class Mask>
   const Value share = stands ? (outside ? zero : one) : inside / length;
   each(totals.time_separated) += lanes ? h * share : zero;
   return true;
+}
+/// The gap with its edges moved out by what rounding leaves of a deflection that stands on one: it meets no flank.
+inline Gap beyond_rounding(Gap gap) {
+  const double rounding = 1e-13 * std::max(std::abs(gap.low), std::abs(gap.high));
+  return {gap.low - rounding, gap.high + rounding};
 }
 /// Enters the flanks that a step a -> b leaves and meets; force: |y| at b.
 void note_crossings(const Gap& gap, const ScalarInput& a, const ScalarInput& b, double force,

@@ -41,6 +41,8 @@ class StepMotion {
   /// At less cost, an interval that this force stays in, with no more told of it; none where it is not known to be r (y_0 + k x) of a
   /// deflection x that unknowns alone move, with r constant or straight along an angle, or the law has no gap.
   virtual std::optional<Range> force_reach(int /*law*/) { return std::nullopt; }
+  /// Of what dry friction keeps at a place of State::history; none where that is no torque or force.
+  virtual std::optional<Range> friction_range(int /*place*/) const { return std::nullopt; }
   /// Of a sum over unknowns, z [rad or m], and over their rates, v [rad/s or m/s].
   virtual std::optional<Range> range(const std::vector<Entry>& /*z*/, const std::vector<Entry>& /*v*/) {
     return std::nullopt;

@@ -116,6 +116,8 @@ void search_peak(const PeakSample& a, const PeakSample& b, const Look& look, dou
     if (!middle) {
       middle = look(t);
       peak.note(middle->y, middle->t);
+      const double same = kRounding * std::abs(middle->y);
+      if (std::abs(middle->y - a.y) <= same && std::abs(middle->y - b.y) <= same) return;  // constant
     }
     search_by_values(a, *middle, b, sign, look, range, peak);
   }

@@ -14,6 +14,7 @@ namespace drev {
 namespace {
 constexpr double kNear = 0.05;  // distance from the range so far, over it, of steps that may hold a new peak
 constexpr double kMostBulge = 0.15;  // > 4/27: cubic_reach()
+constexpr double kSame = 1e-13;      // rounding of a torque of friction over its peak
 constexpr double kShort = 1e-6;      // length over the longest step: nothing moves in shorter ones
 }  // namespace
 
@@ -129,6 +130,10 @@ bool Peaks::may_pass(std::size_t c, const EvaluatedState& from, const EvaluatedS
     if (!range) return true;
     reach = {range->low, range->high};
     beyond = range->error;
+  } else if (const auto range = motion_->friction_range(channels_[c].friction_place())) {
+    // Most often it is constant, at its own peak but for rounding.
+    reach = {range->low, range->high};
+    beyond = range->error - kSame * std::max(std::abs(peaks_[c].max), std::abs(peaks_[c].min));
   } else {
     return true;
   }

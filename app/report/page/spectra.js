@@ -74,6 +74,8 @@ function showSpectra() {
         `lines ` +
         `${sig(s0.resolution_Hz, 3)} Hz apart, Hann window, mean ` +
         `removed)${s0.pooled > 1 ? `; drawn is the largest of each ${s0.pooled} lines` : ""}. ` +
+        `What swings faster than ${sig((0.5 * s0.samples) / (s0.to - s0.from), 3)} Hz, half the rate of the ` +
+        "samples, is folded back below it: a smaller --every shows it where it is. " +
         "Dotted: natural frequencies with contacts closed. The highest peaks are named.",
     ),
     toolbar(group, make("label", {}, "Axis ", select)),
@@ -293,9 +295,10 @@ function showWaterfall(section, run, group, places) {
   const highest = fall.orders[fall.orders.length - 1],
     windows = fall.speed_rpm.length;
   // At most 30 lines are drawn.
-  const every = Math.ceil(fall.orders.length / 30),
-    lines = fall.orders.map((_, k) => k).filter((k) => (k + 1) % every === 0),
-    spacing = fall.orders[0] * every;
+  const apart = fall.orders[1] - fall.orders[0],
+    every = Math.ceil(fall.orders.length / 30),
+    lines = fall.orders.map((_, k) => k).filter((k) => Math.round(fall.orders[k] / apart) % every === 0),
+    spacing = apart * every;
   section.append(
     make("h3", {}, headed(run, "Waterfall")),
     make(

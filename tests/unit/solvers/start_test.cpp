@@ -274,7 +274,8 @@ TEST_CASE("Where there is no such state to start from, the reason is said") {
 TEST_CASE("The settling time is that of the slowest decay, and infinite without damping") {
   const Settling damped = settling_time(disc_on_shaft());
   const double decay = kShaftDamping / (2.0 * kDiscInertia);
-  CHECK(std::abs(damped.time - std::log(1e3) / decay) < 1e-6);
+  const double square = kShaftStiffness / kDiscInertia;
+  CHECK(std::abs(damped.time - std::log(1e3 / std::sqrt(1.0 - decay * decay / square)) / decay) < 1e-6);
   CHECK(damped.reason.find("15.9") != std::string::npos);  // Hz
   const Settling never = settling_time(disc_on_shaft(0.0));
   CHECK(std::isinf(never.time));
@@ -289,4 +290,23 @@ TEST_CASE("The settling time is that of the slowest decay, and infinite without 
   CHECK(settling_time(m.build()).time < 1.0);
   m.add<Dashpot>("drag", {b}, {.damping = 0.5});
   CHECK(std::abs(settling_time(m.build()).time / (4.0 * std::log(1e3)) - 1.0) < 1e-3);
+}
+
+TEST_CASE("A critically damped disc settles as (1 + w t) exp(-w t), one damped more as two of its decays") {
+  const double w = 10.0;
+  const auto time = [&](double ratio) {
+    Model m("disc");
+    m.add_node("wall");
+    m.hold("wall");
+    m.add_node("disc");
+    m.add<Inertia>("J", {"disc"}, {.inertia = 1.0});
+    m.add<ShaftSpring>("shaft", {"wall", "disc"}, {.stiffness = w * w, .damping = 2.0 * ratio * w});
+    return settling_time(m.build()).time;
+  };
+  for (const double ratio : {1.0 - 1e-9, 1.0, 1.0 + 1e-9}) {
+    const double wt = w * time(ratio);
+    CHECK((1.0 + wt) * std::exp(-wt) == Approx(1e-3).epsilon(1e-3));
+  }
+  const double a = w * (1.2 - std::sqrt(0.44)), b = w * (1.2 + std::sqrt(0.44)), t = time(1.2);
+  CHECK((b * std::exp(-a * t) - a * std::exp(-b * t)) / (b - a) == Approx(1e-3).epsilon(1e-6));
 }

@@ -15,10 +15,10 @@ TEST_CASE("A run says that another method took the place of one far too dear, in
   const drev::test::TemporaryFolder folder;
   const std::string path = (folder / "stiff.toml").string(), report = (folder / "r.html").string();
   std::ofstream(path)
-      << "format = 1\n[nodes]\nmotor = {}\nload = {}\n[elements]\n"
+      << "format = 1\n[parameters]\nmount = 500\n[nodes]\nmotor = {}\nload = {}\n[elements]\n"
          "J_motor = { type = \"inertia\", node = \"motor\", inertia_kg_m2 = 0.012 }\n"
          "J_load = { type = \"inertia\", node = \"load\", inertia_kg_m2 = 0.035 }\n"
-         "mount = { type = \"ground_spring\", node = \"load\", stiffness_Nm_per_rad = 500, "
+         "mount = { type = \"ground_spring\", node = \"load\", stiffness_Nm_per_rad = \"mount\", "
          "damping_Nms_per_rad = 0.05 }\n"
          "shaft = { type = \"shaft_spring\", nodes = [\"motor\", \"load\"], "
          "stiffness_Nm_per_rad = 1e9, damping_Nms_per_rad = 2000 }\n"
@@ -48,4 +48,9 @@ TEST_CASE("A run says that another method took the place of one far too dear, in
                                      .out);
   CHECK(asked.at("method") == "dormand_prince");
   CHECK(asked.at("method_reason") == "asked for");
+  // A table is computed as a run of its first variant.
+  const auto table = drev_command(
+      {"run", path, "--vary", "mount=500,501", "--table", "--out", (folder / "table").string(), "--json"});
+  INFO(table.err);
+  CHECK(Json::parse(table.out).at("study").at("method") == "sdirk4");
 }

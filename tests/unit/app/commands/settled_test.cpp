@@ -86,8 +86,10 @@ TEST_CASE("Figures from rest hold the start, from the periodic state, or settled
   // The same from the file, and the command line has the last word.
   const Ran file = run_of(disc("8", "settle = \"auto\"\n"));
   CHECK(file.json["results"]["of"]["settled"] == true);
-  CHECK(std::abs(file.json["results"]["of"]["from_s"].get<double>() - std::log(1e3) / 2.0) < 1e-6);
-  CHECK(contains(file.text, "of the run from 3.45388 s to 5 s"));
+  // Damping ratio 0.02, decay 2/s.
+  CHECK(std::abs(file.json["results"]["of"]["from_s"].get<double>() -
+                 std::log(1e3 / std::sqrt(1.0 - 4e-4)) / 2.0) < 1e-6);
+  CHECK(contains(file.text, "of the run from 3.45398 s to 5 s"));
   CHECK(contains(file.text, "decayed to 0.1 %"));
   CHECK(run_of(disc("8", "settle_s = 1.5\n")).json["results"]["of"]["from_s"] == 1.5);
   CHECK(run_of(disc("8", "settle_s = 1.5\n"), {"--settle", "2"}).json["results"]["of"]["from_s"] == 2.0);
@@ -107,7 +109,7 @@ TEST_CASE("A run that does not settle says so, and has its figures of the whole 
 }
 
 TEST_CASE("A run that settles but has no whole cycle left says just that") {
-  // It has settled after ln(1000)/2 = 3.45388 s; the cycle, four turns, is 0.251327 s. That of the loads is two turns.
+  // It has settled after 3.45398 s; the cycle, four turns, is 0.251327 s. That of the loads is two turns.
   const std::string of_loads = disc("8", "settle = \"auto\"\n");
   CHECK(run_of(of_loads, {"--duration", "3.58"}).json["results"]["of"]["settled"] == true);
   CHECK(contains(run_of(of_loads, {"--duration", "3.57"}).json["results"]["of"]["reason"].get<std::string>(),
@@ -120,7 +122,7 @@ TEST_CASE("A run that settles but has no whole cycle left says just that") {
   CHECK(of["from_s"] == 0.0);
   const std::string reason = of["reason"];
   CHECK(contains(reason, "the run of 3.6 s ends less than one cycle of 0.251327 s after it has settled"));
-  CHECK(contains(reason, "from 3.70521 s on there is a whole cycle"));
+  CHECK(contains(reason, "from 3.70531 s on there is a whole cycle"));
   CHECK_FALSE(contains(reason, "does not settle"));
   CHECK(contains(unwrapped(shorter.text), "ends less than one cycle of 0.251327 s"));
   CHECK(run_of(model, {"--duration", "3.71"}).json["results"]["of"]["settled"] == true);

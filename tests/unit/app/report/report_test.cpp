@@ -418,6 +418,9 @@ TEST_CASE("Spectra are over whole cycles at any constant nominal speed: an order
   const auto lines = decoded<float>(spectra.at("channels")[0].at("amplitude").get<std::string>());
   REQUIRE_FALSE(lines.empty());
   CHECK(*std::max_element(lines.begin(), lines.end()) == Approx(50.0).epsilon(1e-4));
+  // Once a turn the torque is always the same: what rounding leaves of it is no peak.
+  const Json once = block_of_run({path, "--every", "0.09724473257698542", "--duration", "20"}).at("spectra");
+  CHECK(once.at("channels")[0].at("peaks").empty());
 }
 
 TEST_CASE("A train without a frequency or a speed of its own has the spectrum of what was recorded") {
@@ -429,4 +432,21 @@ TEST_CASE("A train without a frequency or a speed of its own has the spectrum of
                          "[run]\nduration_s = 1\nrecord = [\"a.speed_rad_per_s\"]\n";
   const Json spectra = block_of_run({path}).at("spectra");
   CHECK(decoded<float>(spectra.at("channels")[0].at("amplitude").get<std::string>()).size() > 10);
+}
+
+TEST_CASE("The waterfall begins at two cycles a window, so that order 0.5 is not shown at 0.25, too") {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "up.toml").string(), out = (folder / "out").string();
+  std::ofstream(path)
+      << "format = 1\n[nodes]\nend = { run_up = { speed_0_rpm = 600, speed_1_rpm = 1200, time_0_s = 0, "
+         "time_1_s = 1 }, hold = true }\ndisc = {}\n[elements]\n"
+         "J = { type = \"inertia\", node = \"disc\", inertia_kg_m2 = 1 }\n"
+         "shaft = { type = \"shaft_spring\", nodes = [\"end\", \"disc\"], stiffness_Nm_per_rad = 1e4 }\n"
+         "[run]\nduration_s = 1\n";
+  REQUIRE(drev_command({"run", path, "--out", out}).exit_code == 0);
+  std::istringstream rows(read_file(out + "/waterfall.csv"));
+  std::string row;
+  std::getline(rows, row);
+  std::getline(rows, row);
+  CHECK(contains(row, ",0.5,"));
 }

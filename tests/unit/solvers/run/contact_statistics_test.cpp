@@ -191,3 +191,37 @@ TEST_CASE("Equivalent mass of a contact: 1/(b^T M^-1 b), lumped and consistent")
   b[system.node_map(system.node("b")).unknown] = 0.12;
   CHECK(equivalent_masses(system)[0] == Approx(1.0 / b.dot(ldlt_solve(mass, b))).epsilon(1e-13));
 }
+
+TEST_CASE("Two inertias that move together at the edge of their gap meet no flank") {
+  Model m("together");
+  for (const char* node : {"a", "b"}) m.add_node(node);
+  m.add<Inertia>("J_a", {"a"}, {.inertia = 2.0});
+  m.add<Inertia>("J_b", {"b"}, {.inertia = 1.0});
+  PolylineSpring::Params gap = PolylineSpring::dead_band(100.0, 1.0);
+  gap.damping = 1.0;
+  m.add<PolylineSpring>("gap", {"a", "b"}, gap);
+  m.set_initial("a", 0.0, -1.0);
+  m.set_initial("b", 1.0, -1.0);
+  const System system = m.build();
+  ContactStatistics contacts(system, true);
+  REQUIRE(
+      run_method(system, {.name = "dormand_prince", .tolerance = 1e-8}, {.t_end = 1.0}, {&contacts}).ok());
+  CHECK(contacts.records()[0].impacts() == 0);
+}
+
+TEST_CASE("Impacts between prescribed nodes have no energy that is known") {
+  Model m("prescribed");
+  for (const char* node : {"a", "b", "z"}) m.add_node(node);
+  m.given_motion("a", {.at = [](double t) {
+                   return MotionPoint{std::sin(kTwoPi * t), kTwoPi * std::cos(kTwoPi * t),
+                                      -kTwoPi * kTwoPi * std::sin(kTwoPi * t)};
+                 }});
+  m.hold("b");
+  m.add<Inertia>("J", {"z"}, {.inertia = 1.0});
+  m.add<PolylineSpring>("gap", {"a", "b"}, PolylineSpring::dead_band(1e4, 0.1));
+  const System system = m.build();
+  ContactStatistics contacts(system, true);
+  REQUIRE(run_method(system, {.step = 1e-3}, {.t_end = 1.0}, {&contacts}).ok());
+  CHECK(contacts.records()[0].impacts() > 1);
+  CHECK(std::isinf(contacts.records()[0].impact_energy));
+}

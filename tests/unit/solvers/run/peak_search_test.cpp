@@ -64,3 +64,9 @@ TEST_CASE("Peak search: a maximum just inside an end of an interval, or of the f
         }
       }
 }
+
+TEST_CASE("Peak search: a constant takes one look where it has no rate") {
+  const auto y = [](double t) { return 3.0 + 4e-16 * std::sin(1e3 * t); };
+  const auto none = [](double) { return 0.0; };
+  CHECK(searched(y, none, false, 10).second <= 10);
+}
