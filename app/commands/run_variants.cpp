@@ -117,7 +117,11 @@ int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks,
       const Json summary = summary_of_table(folder).value_or(Json::object());
       write_page(report, line, study, folder, summary);
       print(line.json ? json_text(summary) : labelled("table", table_path(folder) + " is complete already"));
-      return exit_code_of(summary);
+      const int code = exit_code_of(summary);
+      if (code != kSuccess)
+        std::fprintf(stderr, "drev: not all of its variants succeeded; variants.json in %s says why\n",
+                     folder.c_str());
+      return code;
     }
   watch_signals();
   VariantStore store(folder, study.description().dump(), study.store_shape(), resume);
@@ -148,11 +152,16 @@ int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks,
   std::string text = summary.text;
   if (outcome.computed > 0 && outcome.seconds > 0.0) {
     const int cores = threads * ranks.count();
-    text += labelled("time", rough_time(outcome.seconds) + " on " + std::to_string(cores) +
-                                 (cores == 1 ? " thread: " : " threads: ") +
-                                 digits(static_cast<double>(outcome.computed) / outcome.seconds / cores, 3) +
-                                 " variants a second on each");
+    // Of short work a whole number of seconds would be 0.
+    const std::string time =
+        outcome.seconds < 90.0 ? digits(outcome.seconds, 2) + " s" : rough_time(outcome.seconds);
+    text +=
+        labelled("time", time + " on " + std::to_string(cores) + (cores == 1 ? " thread: " : " threads: ") +
+                             digits(static_cast<double>(outcome.computed) / outcome.seconds / cores, 3) +
+                             " variants a second on each");
   }
+  if (line.quiet || line.json)  // what is wrong is not seen in the text then
+    std::fputs(summary.remarks.empty() ? "" : ("drev: of the variants\n" + summary.remarks).c_str(), stderr);
   print(line.json ? json_text(summary.json) : text);
   return summary.exit_code;
 }
