@@ -20,6 +20,7 @@
 #include "app/report/report_file.hpp"
 #include "app/report/report_page.hpp"
 #include "app/report/variants_report.hpp"
+#include "app/results/hdf5_file.hpp"
 #include "app/variants/ranks.hpp"
 #include "app/variants/variant_points.hpp"
 #include "app/variants/variant_table.hpp"
@@ -47,6 +48,11 @@ constexpr std::pair<const char*, const char*> kWithout[] = {
 void check_study_folder(const VariantStudy& study, const std::string& folder, bool resume) {
   const auto description = VariantStore::description_in(folder);
   std::vector<Finding> findings;
+  std::vector<std::string> columns{"status"};
+  for (const Varied& v : study.plan().varied()) columns.push_back(v.name);
+  for (const FigureColumn& figure : study.figures()) columns.push_back(figure.name);
+  if (const auto why = why_no_hdf5(columns))
+    findings.push_back({kCommandLine, "--table", "", "", "cannot have all columns: " + *why});
   const auto refuse_others = [&](const std::string& path, const Json& then) {
     for (const std::string& difference : differences(then, study.description()))
       findings.push_back({path, "--resume", "", "", "cannot go on with another study: " + difference});
@@ -56,9 +62,7 @@ void check_study_folder(const VariantStudy& study, const std::string& folder, bo
       refuse_others(table_path(folder), *then);
   } else if (resume) {
     refuse_others(VariantStore::path_in(folder), Json::parse(*description, nullptr, false));
-  } else {
-    const auto [done, all] = VariantStore::progress_in(folder);
-    if (done == 0) return;
+  } else if (const auto [done, all] = VariantStore::progress_in(folder); done > 0) {
     const auto then = Json::parse(*description, nullptr, false);
     const std::uint64_t variants = then.is_object() ? then.value("variants", all) : all;
     const std::uint64_t finished =

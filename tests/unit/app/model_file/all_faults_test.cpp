@@ -232,6 +232,7 @@ TEST_CASE("What a run with output would refuse is wrong with its file") {
         "m.toml:11:10: run: step = 0.9 s, is above the stability limit of rk4");
   fault("static_turn_deg = -5", "run.static_turn_deg, must be >= 0");
   fault("out = \"\"", "run.out, must be the name of a folder");
+  fault("record = [\"a.angle_rad\", \"a.angle_rad\"]", "run.record, a.angle_rad is named twice");
   CHECK(checked(train("[run]\nevery_s = 0.5\nmethod = \"rk4\"\nstep_s = 0.01\n")).exit_code == 0);
 }
 
