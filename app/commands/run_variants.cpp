@@ -40,6 +40,7 @@ constexpr std::pair<const char*, const char*> kWithout[] = {
     {"--events", "is for one run"},
     {"--rainflow", "is for single runs"},
     {"--orders-of", "is for single runs"},
+    {"--energy", "is for single runs"},
     {"--every", "is for single runs, which have a history"},
     {"--format", "is for single runs, which have a history"}};
 
