@@ -83,6 +83,7 @@ class ExactRun final : public StepMotion {
     so_far();
     const double rounding = friction_.energy_of_rounding(options_.t_end - options_.t_start);
     if (!(std::abs(summary_.energy.worst_imbalance) <= rounding)) judge_energy(summary_, allowed_imbalance_);
+    controls_.warn(summary_);
     return summary_;
   }
 
