@@ -30,6 +30,7 @@ struct CommandEntry {
   bool takes_model = true;    ///< MODEL, and --set for its parameters
   bool takes_models = false;  ///< more than one, too: line.list("MODEL")
   bool takes_sets = false;    ///< --set although it takes no MODEL
+  bool has_json = true;       ///< --json: its result is an object, too
   std::vector<OptionEntry> options = {};
   std::string footer = {};
   /// Does it and returns the exit code; what is printed goes to stdout in one piece. Throws ModelError for

@@ -42,8 +42,9 @@ void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
   if (command.takes_model || command.takes_sets)
     sub.add_option("--set", raw.sets, "Changes parameters; as often as needed")
         ->option_text("NAME=VALUE ...");
-  sub.add_flag("--json", raw.json, "Prints one JSON object and nothing else");
-  sub.add_flag("--quiet", raw.quiet, "Prints nothing but what is wrong")->excludes("--json");
+  CLI::Option* quiet = sub.add_flag("--quiet", raw.quiet, "Prints nothing but what is wrong");
+  if (command.has_json)
+    sub.add_flag("--json", raw.json, "Prints one JSON object and nothing else")->excludes(quiet);
   for (const OptionEntry& option : command.options)
     if (option.values == OptionEntry::Values::none)
       sub.add_flag_callback(
@@ -55,11 +56,17 @@ void add_options(CLI::App& sub, const CommandEntry& command, Raw& raw) {
   sub.footer(command.footer);
 }
 
-std::vector<std::string> option_names(const CLI::App& sub) {
+/// The option that is meant by one that does not exist: the first that begins so, else the nearest. The dashes, which all
+/// have, make none nearer. Empty: there is none.
+std::string meant_option(const std::string& name, const CLI::App& sub) {
+  const std::string bare = name.substr(std::min(name.find_first_not_of('-'), name.size()));
   std::vector<std::string> names;
   for (const CLI::Option* option : sub.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
+    for (const std::string& known : option->get_lnames()) names.push_back(known);
+  const auto longer = std::find_if(names.begin(), names.end(),
+                                   [&](const std::string& known) { return known.starts_with(bare); });
+  const std::string meant = longer != names.end() ? *longer : nearest_name(bare, names);
+  return meant.empty() ? meant : "--" + meant;
 }
 
 bool looks_like_option(const std::string& text) {
@@ -69,13 +76,13 @@ bool looks_like_option(const std::string& text) {
 
 /// "; did you mean ..." or the command that has the option.
 std::string option_hint(const std::string& name, const CLI::App& sub) {
-  const std::vector<std::string> names = option_names(sub);
-  const std::string nearest = nearest_name(name, names);
+  const std::string meant = meant_option(name, sub);
+  const std::string question = meant.empty() ? meant : "; did you mean '" + meant + "'?";
   for (const CLI::App* other : sub.get_parent()->get_subcommands({}))
     if (other->get_option_no_throw(name) != nullptr)
-      return (nearest.starts_with(name) ? did_you_mean(name, names) + " (" : "; ") + "drev " +
-             other->get_name() + " has " + (nearest.starts_with(name) ? name + ")" : "it");
-  return did_you_mean(name, names);
+      return (meant.starts_with(name) ? question + " (" : "; ") + "drev " + other->get_name() + " has " +
+             (meant.starts_with(name) ? name + ")" : "it");
+  return question;
 }
 
 /// How a NAME=VALUE behind no option must be written: by the option that the ones before it belong to (--vary A=1:2 B=3:4), or
@@ -288,7 +295,9 @@ ParsedCommandLine parse_command_line(int argc, char** argv, const std::vector<Co
         {kCommandLine, "command", chosen[1]->get_name(), "", "is a second one; give one command"});
   for (const std::string& word : app.remaining())
     line.findings.push_back({kCommandLine, looks_like_option(word) ? "option" : "argument", word, "",
-                             "must stand after the command " + sub.get_name()});
+                             word == "help"
+                                 ? "is no command; did you mean 'drev " + sub.get_name() + " --help'?"
+                                 : "must stand after the command " + sub.get_name()});
   report_extras(sub.remaining(), sub, words, line.findings);
   take_sets(raw, line);
   for (const OptionEntry& option : command.options) take_option(option, raw.options[option.name], line);

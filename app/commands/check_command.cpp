@@ -18,6 +18,17 @@ std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+Json faults_array(const std::vector<Finding>& findings) {
+  Json faults = Json::array();
+  for (const Finding& f : findings)
+    faults.push_back({{"place", f.place},
+                      {"parameter", f.parameter},
+                      {"value", f.value},
+                      {"unit", f.unit},
+                      {"range", f.range}});
+  return faults;
+}
+
 /// The runs that a file names; none where it cannot be read, which is said elsewhere.
 std::vector<std::string> run_names(const CommandLine& line) {
   try {
@@ -52,9 +63,16 @@ int check_command(const CommandLine& line) {
       for (const Finding& finding : error.findings())
         if (said.insert(finding.text()).second) findings.push_back(finding);
     }
-  if (!findings.empty()) throw ModelError(std::move(findings));
+  if (!findings.empty()) {
+    if (line.json) print(json_text({{"model", line.model}, {"faults", faults_array(findings)}}));
+    throw ModelError(std::move(findings));
+  }
   if (line.json)
-    print(json_text({{"model", line.model}, {"nodes", nodes}, {"elements", elements}, {"runs", names}}));
+    print(json_text({{"model", line.model},
+                     {"faults", Json::array()},
+                     {"nodes", nodes},
+                     {"elements", elements},
+                     {"runs", names}}));
   else
     print(line.model + ": sound; " + counted(nodes, "node") + ", " + counted(elements, "element") +
           (names.empty() ? "" : "; runs: " + join(names)) + "\n");

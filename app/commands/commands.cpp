@@ -212,6 +212,7 @@ const std::vector<CommandEntry>& commands() {
       {.name = "study",
        .summary = "Repeats the source's studies of the camshaft and judges its conclusions",
        .takes_model = false,
+       .has_json = false,
        .options = {{"--out", "DIR", "Creates DIR with study.md and pictures/study_*.svg"},
                    {"--only", "NAME,...", "Some of the studies; a wrong name lists them", commas}},
        .footer = kStudyExamples,

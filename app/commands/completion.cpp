@@ -86,7 +86,8 @@ std::vector<std::string> offered_for(const std::vector<std::string>& words) {
   if (word.starts_with("-")) {
     for (const OptionEntry& entry : command->options) offered.push_back(entry.name);
     if (command->takes_model) offered.push_back("--set");
-    offered.insert(offered.end(), {"--json", "--quiet", "--help"});
+    if (command->has_json) offered.push_back("--json");
+    offered.insert(offered.end(), {"--quiet", "--help"});
     return offered;
   }
   if (option != words.rend() && (*option == "--set" || *option == "--vary") && model.entry)

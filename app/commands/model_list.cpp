@@ -111,6 +111,10 @@ ModelList list_models(const std::vector<std::string>& words, std::vector<Finding
       add_directory(word, list, findings);
     else
       list.models.push_back({name_of(word), word});
+  const auto is_same = [](const std::string& one, const std::string& other) {
+    std::error_code error;
+    return one == other || fs::equivalent(one, other, error);
+  };
   std::map<std::string, std::string> named;
   for (const NamedModel& model : list.models)
     if (model.name == "." || model.name == ".." || model.name.starts_with("runs."))
@@ -120,7 +124,8 @@ ModelList list_models(const std::vector<std::string>& words, std::vector<Finding
     if (const auto [same, added] = named.emplace(model.name, model.model); !added)
       findings.push_back(
           {kCommandLine, "MODEL", model.model, "",
-           "has the name of " + same->second + "; both results would be in DIR/" + model.name});
+           (is_same(model.model, same->second) ? "is given twice" : "has the name of " + same->second) +
+               "; both results would be in DIR/" + model.name});
   return list;
 }
 

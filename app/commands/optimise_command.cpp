@@ -1,6 +1,7 @@
 #include <drev/core/version.hpp>
 
 #include <algorithm>
+#include <cstdio>
 #include <optional>
 #include <thread>
 
@@ -170,11 +171,20 @@ std::string failures_text(const Optimum& optimum) {
   return text;
 }
 
+/// Which variants were computed.
+std::string extent_text(const OptimumRequest& request, const Optimum& optimum) {
+  if (optimum.all) return "all combinations";
+  if (request.study.plan().sampling()) return "by a Latin hypercube and a search from its best";
+  return "interrupted before all " + std::to_string(request.study.plan().count()) +
+         " combinations were computed";
+}
+
 /// Whether the best variant is certain to be the best of all.
-std::string certainty_text(const Optimum& optimum, bool largest) {
-  if (!optimum.all)
+std::string certainty_text(const OptimumRequest& request, const Optimum& optimum) {
+  if (!optimum.all && request.study.plan().sampling())
     return std::string("no: a search proves nothing; see whether another --seed finds ") +
-           (largest ? "more" : "less");
+           (request.options.largest ? "more" : "less");
+  if (!optimum.all) return "no: nothing is known of the combinations that were not computed";
   if (const std::size_t warned = warned_in(optimum); warned > 0)
     return "no: " + std::to_string(warned) + " of the " + std::to_string(optimum.tried.size()) +
            " combinations have a warning, marked with *";
@@ -195,15 +205,17 @@ std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) 
     if (const TriedVariant& best = optimum.tried[optimum.order[0]]; !best.reason.empty())
       text += "*** WARNING: " + values_text(best.values) + ": " + best.reason + "\n\n";
   text += labelled("variants", std::to_string(optimum.tried.size()) + " of " + request.study.request().words +
-                                   (optimum.all ? ", all combinations"
-                                                : ", by a Latin hypercube and a search from its best")) +
+                                   ", " + extent_text(request, optimum)) +
           labelled("method", to_text(request.study.request().method));
   const std::size_t failed = failed_in(optimum).size(),
                     none = optimum.tried.size() - optimum.order.size() - failed;
   if (failed > 0) text += labelled("failed", std::to_string(failed) + " of them") + failures_text(optimum);
   if (none > 0) text += labelled("without figure", std::to_string(none) + " of them, which succeeded");
-  if (optimum.interrupted) text += labelled("interrupted", "this is the best so far");
-  if (optimum.order.empty()) return text + labelled("optimum", "none: no variant succeeded");
+  if (optimum.interrupted && !optimum.order.empty())
+    text += labelled("interrupted", "this is the best so far");
+  if (optimum.order.empty())
+    return text + labelled("optimum", optimum.tried.empty() ? "none: no variant was computed"
+                                                            : "none: no variant succeeded");
   const TriedVariant& best = optimum.tried[optimum.order[0]];
   const bool all_equal =
       optimum.order.size() > 1 && best.figure == optimum.tried[optimum.order.back()].figure;
@@ -211,7 +223,7 @@ std::string optimum_text(const OptimumRequest& request, const Optimum& optimum) 
                    digits(best.figure, 8) + unit) +
           labelled("at", all_equal ? "any: all " + std::to_string(optimum.order.size()) + " have this figure"
                                    : values_text(best.values)) +
-          labelled("certain", certainty_text(optimum, request.options.largest)) + "\nThe best variants\n";
+          labelled("certain", certainty_text(request, optimum)) + "\nThe best variants\n";
   std::vector<std::vector<std::string>> rows{{"parameters", figure.name + in_head}};
   for (std::size_t i = 0; i < std::min(kTold, optimum.order.size()); ++i) {
     const TriedVariant& tried = optimum.tried[optimum.order[i]];
@@ -255,7 +267,11 @@ int optimise_command(const CommandLine& line) {
     write_file(*out, "optimum", "json", json_text(object));
   }
   print(line.json ? json_text(object) : optimum_text(request, optimum));
-  if (optimum.interrupted) return kInterrupted;
+  if (optimum.interrupted) {
+    std::fprintf(stderr, "drev: interrupted; the optimum is that of the %zu variants computed so far\n",
+                 optimum.tried.size());
+    return kInterrupted;
+  }
   return optimum.order.empty() ? kNotTrusted : kSuccess;
 }
 

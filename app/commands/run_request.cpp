@@ -16,6 +16,7 @@
 #include "app/cli/model_option.hpp"
 #include "app/cli/option_values.hpp"
 #include "app/report/report_file.hpp"
+#include "app/results/hdf5_file.hpp"
 #include "app/run/excitation.hpp"
 #include "app/run/run_up.hpp"
 #include "solvers/stepping/stability_limit.hpp"
@@ -335,12 +336,18 @@ RunRequest request_run(const CommandLine& given) {
     record = read_channels("--record", OverRun::taken, *model, line, parameters_right, findings);
     rainflow = read_channels("--rainflow", OverRun::refused, *model, line, parameters_right, findings);
   }
+  if (model && !line.list("--record")) record = model->model_case.channels;
+  const std::vector<std::string> formats = line.list("--format").value_or(std::vector<std::string>{});
+  const bool hdf5 = std::count(formats.begin(), formats.end(), "hdf5") > 0;
+  if (hdf5) {
+    std::vector<std::string> columns{"time_s"};
+    columns.insert(columns.end(), record.begin(), record.end());
+    if (const auto why = why_no_hdf5(columns))
+      findings.push_back({kCommandLine, "--format", "hdf5", "", "cannot have all columns: " + *why});
+  }
   if (model) check_orders_of(*model, line, findings);
   blame_file(line, findings);
   if (!findings.empty()) throw ModelError(std::move(findings));
-  const std::vector<std::string> formats = line.list("--format").value_or(std::vector<std::string>{});
-  const bool hdf5 = std::count(formats.begin(), formats.end(), "hdf5") > 0;
-  if (!line.list("--record")) record = model->model_case.channels;
   return {std::move(*model),
           chosen,
           accuracy,

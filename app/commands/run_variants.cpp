@@ -20,6 +20,7 @@
 #include "app/report/report_file.hpp"
 #include "app/report/report_page.hpp"
 #include "app/report/variants_report.hpp"
+#include "app/results/hdf5_file.hpp"
 #include "app/run/run_computation.hpp"
 #include "app/variants/ranks.hpp"
 #include "app/variants/variant_points.hpp"
@@ -40,6 +41,7 @@ constexpr std::pair<const char*, const char*> kWithout[] = {
     {"--events", "is for one run"},
     {"--rainflow", "is for single runs"},
     {"--orders-of", "is for single runs"},
+    {"--energy", "is for single runs"},
     {"--every", "is for single runs, which have a history"},
     {"--format", "is for single runs, which have a history"}};
 
@@ -48,6 +50,11 @@ constexpr std::pair<const char*, const char*> kWithout[] = {
 void check_study_folder(const VariantStudy& study, const std::string& folder, bool resume) {
   const auto description = VariantStore::description_in(folder);
   std::vector<Finding> findings;
+  std::vector<std::string> columns{"status"};
+  for (const Varied& v : study.plan().varied()) columns.push_back(v.name);
+  for (const FigureColumn& figure : study.figures()) columns.push_back(figure.name);
+  if (const auto why = why_no_hdf5(columns))
+    findings.push_back({kCommandLine, "--table", "", "", "cannot have all columns: " + *why});
   const auto refuse_others = [&](const std::string& path, const Json& then) {
     for (const std::string& difference : differences(then, study.description()))
       findings.push_back({path, "--resume", "", "", "cannot go on with another study: " + difference});
@@ -57,9 +64,7 @@ void check_study_folder(const VariantStudy& study, const std::string& folder, bo
       refuse_others(table_path(folder), *then);
   } else if (resume) {
     refuse_others(VariantStore::path_in(folder), Json::parse(*description, nullptr, false));
-  } else {
-    const auto [done, all] = VariantStore::progress_in(folder);
-    if (done == 0) return;
+  } else if (const auto [done, all] = VariantStore::progress_in(folder); done > 0) {
     const auto then = Json::parse(*description, nullptr, false);
     const std::uint64_t variants = then.is_object() ? then.value("variants", all) : all;
     const std::uint64_t finished =
@@ -118,7 +123,11 @@ int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks,
       const Json summary = summary_of_table(folder).value_or(Json::object());
       write_page(report, line, study, folder, summary);
       print(line.json ? json_text(summary) : labelled("table", table_path(folder) + " is complete already"));
-      return exit_code_of(summary);
+      const int code = exit_code_of(summary);
+      if (code != kSuccess)
+        std::fprintf(stderr, "drev: not all of its variants succeeded; variants.json in %s says why\n",
+                     folder.c_str());
+      return code;
     }
   watch_signals();
   VariantStore store(folder, study.description().dump(), study.store_shape(), resume);
@@ -149,11 +158,16 @@ int lead(const CommandLine& line, const VariantStudy& study, const Ranks& ranks,
   std::string text = summary.text;
   if (outcome.computed > 0 && outcome.seconds > 0.0) {
     const int cores = threads * ranks.count();
-    text += labelled("time", rough_time(outcome.seconds) + " on " + std::to_string(cores) +
-                                 (cores == 1 ? " thread: " : " threads: ") +
-                                 digits(static_cast<double>(outcome.computed) / outcome.seconds / cores, 3) +
-                                 " variants a second on each");
+    // Of short work a whole number of seconds would be 0.
+    const std::string time =
+        outcome.seconds < 90.0 ? digits(outcome.seconds, 2) + " s" : rough_time(outcome.seconds);
+    text +=
+        labelled("time", time + " on " + std::to_string(cores) + (cores == 1 ? " thread: " : " threads: ") +
+                             digits(static_cast<double>(outcome.computed) / outcome.seconds / cores, 3) +
+                             " variants a second on each");
   }
+  if (line.quiet || line.json)  // what is wrong is not seen in the text then
+    std::fputs(summary.remarks.empty() ? "" : ("drev: of the variants\n" + summary.remarks).c_str(), stderr);
   print(line.json ? json_text(summary.json) : text);
   return summary.exit_code;
 }

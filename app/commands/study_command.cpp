@@ -49,8 +49,6 @@ std::vector<StudyEntry> chosen(const CommandLine& line) {
     if (std::find(names.begin(), names.end(), name) == names.end())
       findings.push_back({kCommandLine, "--only", name, "",
                           "is no study; they are " + join(names) + did_you_mean(name, names)});
-  if (line.json)
-    findings.push_back({kCommandLine, "--json", "", "", "is not for drev study; --out writes study.md"});
   if (!findings.empty()) throw ModelError(findings);
   std::vector<StudyEntry> entries;
   for (const StudyEntry& entry : studies())

@@ -4,7 +4,8 @@
 #include <drev/core/version.hpp>
 
 #include <map>
-#include <set>
+#include <string_view>
+#include <utility>
 
 namespace drev::app {
 
@@ -47,6 +48,17 @@ std::string base_of_key(const std::string& unit) {
       return text;
     }
   return {};
+}
+
+/// A parameter's unit as channels spell it: "Nm_per_rad" is N m/rad, "kg_m2" kg m^2.
+std::string as_of_channel(std::string unit) {
+  constexpr std::pair<const char*, const char*> kSpelled[] = {
+      {"Nms", "N m s"}, {"Nm", "N m"}, {"Ns", "N s"}, {"kgm2", "kg m2"}, {"_per_", "/"},
+      {"per_", "1/"},   {"_", " "},    {"m2", "m^2"}, {"m3", "m^3"}};
+  for (const auto& [key, spelled] : kSpelled)
+    if (const std::size_t at = unit.find(key); at != unit.npos)
+      unit.replace(at, std::string_view(key).size(), spelled);
+  return unit;
 }
 
 std::string escaped(const std::string& text) {
@@ -123,17 +135,21 @@ class Description {
   }
 
   void add_units() {
-    std::set<std::string> units;
-    for (const FmuVariable& v : instance_.variables())
-      if (v.type == FmuVariable::Type::real && !v.unit.empty()) units.insert(v.unit);
+    std::map<std::string, std::string> bases;
+    for (const FmuVariable& v : instance_.variables()) {
+      if (v.type != FmuVariable::Type::real || v.unit.empty()) continue;
+      const auto known = base_units().find(name_of_unit(v));
+      bases[name_of_unit(v)] = known == base_units().end() ? base_of_key(v.unit) : known->second;
+    }
     line("  <UnitDefinitions>");
-    for (const std::string& unit : units) {
-      const auto known = base_units().find(unit);
-      const std::string base = known == base_units().end() ? base_of_key(unit) : known->second;
+    for (const auto& [unit, base] : bases)
       line("    <Unit" + attribute("name", unit) +
            (base.empty() ? "/>" : "><BaseUnit " + base + "/></Unit>"));
-    }
     line("  </UnitDefinitions>");
+  }
+
+  static std::string name_of_unit(const FmuVariable& v) {
+    return base_of_key(v.unit).empty() ? v.unit : as_of_channel(v.unit);
   }
 
   void add_variable(unsigned reference) {
@@ -150,8 +166,9 @@ class Description {
                                                                                                : "fixed");
     if (fmi_ == 2 && v.role == parameter) common += attribute("initial", "exact");
     if (fmi_ == 2 && v.role == output) common += attribute("initial", "calculated");
+    if (fmi_ == 3 && v.role == output) common += attribute("intermediateUpdate", "true");
     std::string of_type = range_of(v);
-    if (!v.unit.empty() && v.type == FmuVariable::Type::real) of_type += attribute("unit", v.unit);
+    if (!v.unit.empty() && v.type == FmuVariable::Type::real) of_type += attribute("unit", name_of_unit(v));
     std::string start;
     if (v.role != time && v.role != output) start = start_of(reference, v);
     const bool text = v.type == FmuVariable::Type::text;

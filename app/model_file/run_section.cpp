@@ -148,7 +148,9 @@ std::vector<std::string> RunSection::channels(const std::string& key, const std:
     return value.is(Value::Kind::array) && i < value.items.size() ? value.items[i].at : value.at;
   };
   std::unordered_map<std::string, std::size_t> origin;
-  for (std::size_t i = 0; i < asked.size(); ++i) origin.emplace(asked[i], i);
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    if (!origin.emplace(asked[i], i).second)
+      context.findings.push_back(fault_at(place(i), "run." + key, asked[i] + " is named twice"));
   std::vector<std::string> found;
   try {
     for (const Channel& channel :

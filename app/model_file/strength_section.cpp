@@ -85,6 +85,9 @@ void list_section(Fields& f, SectionStrength& s) {
   f.number({"sn_range", D::pressure}, s.sn.reference);
   f.number({"sn_cycles", D::none}, s.sn.cycles);
   f.number({"sn_slope", D::none}, s.sn.slope);
+  if (std::isnan(s.sn.reference))
+    for (const char* name : {"sn_cycles", "sn_slope"})
+      f.without_effect(name, "an S-N line needs an sn_range, with its unit behind it");
 }
 
 void read_strength(const Value& table, const System& system, ModelCase& model_case, const LeftOut& left_out,

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <hdf5.h>
+#include <map>
 #include <utility>
 
 #include "app/base/output_file.hpp"
+#include "app/base/text_layout.hpp"
 
 namespace drev::app {
 
@@ -157,6 +159,24 @@ void Hdf5File::check(bool good) const {
   if (const std::size_t at = reason.find(marker); at != std::string::npos)
     reason = reason.substr(at + marker.size(), reason.find('\'', at + marker.size()) - at - marker.size());
   throw OutputError("cannot write " + path_ + ": " + reason);
+}
+
+std::optional<std::string> why_no_hdf5(const std::vector<std::string>& names) {
+  std::map<std::string, std::string> column_at;  // by the path that HDF5 makes of a name, without empty parts
+  for (const std::string& name : names) {
+    std::vector<std::string> parts = split(name, '/');
+    std::erase(parts, "");
+    const auto [other, added] = column_at.emplace(join(parts, "/"), name);
+    if (!added)
+      return "'" + other->second + "' and '" + name +
+             "' are one path in HDF5, where a '/' makes groups: rename one of them";
+  }
+  for (const auto& [path, name] : column_at)
+    for (std::size_t end = path.find('/'); end != path.npos; end = path.find('/', end + 1))
+      if (const auto group = column_at.find(path.substr(0, end)); group != column_at.end())
+        return "'" + group->second + "' would be the group of '" + name +
+               "' in HDF5, where a '/' makes groups: rename one of them";
+  return {};
 }
 
 std::optional<std::string> hdf5_text(const std::string& path, const std::string& name) {

@@ -45,6 +45,9 @@ class Hdf5File {
   std::vector<Opened> columns_;
 };
 
+/// Why columns of these names cannot all have a dataset; nullopt: they can.
+std::optional<std::string> why_no_hdf5(const std::vector<std::string>& names);
+
 /// A text attribute of an HDF5 file; nullopt: there is no such file or attribute.
 std::optional<std::string> hdf5_text(const std::string& path, const std::string& name);
 

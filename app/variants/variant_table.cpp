@@ -213,9 +213,9 @@ VariantSummary summary_of(const VariantStudy& study, const VariantStatistics& st
                                                    ? ", eight variants in lockstep"
                                                    : ", one by one: " + study.why_not_lockstep())) +
          "\n" + figures_text(study, statistics) + "\n";
-  text += remarks_text(study, remarks.failures, count - good, "more failed", folder) +
-          remarks_text(study, remarks.warnings, remarks.warned, "more have a warning", folder);
-  text += labelled("table", table_path(folder));
+  summary.remarks = remarks_text(study, remarks.failures, count - good, "more failed", folder) +
+                    remarks_text(study, remarks.warnings, remarks.warned, "more have a warning", folder);
+  text += summary.remarks + labelled("table", table_path(folder));
   return summary;
 }
 

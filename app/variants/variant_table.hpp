@@ -17,8 +17,9 @@ inline constexpr std::size_t kFailuresKept =
 
 /// The outcome of a study.
 struct VariantSummary {
-  Json json;         ///< variants.json, as docs/variants.schema.json describes it
-  std::string text;  ///< the summary as readable text
+  Json json;                 ///< variants.json, as docs/variants.schema.json describes it
+  std::string remarks = {};  ///< which variants failed or have a warning, as readable text
+  std::string text;          ///< the summary as readable text, with the remarks
   int exit_code = 0;
 };
 VariantSummary summary_of(const VariantStudy& study, const VariantStatistics& statistics,

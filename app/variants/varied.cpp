@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 
 #include "app/base/text_layout.hpp"
 #include "app/cli/command_line.hpp"
@@ -20,7 +20,7 @@ constexpr double kMostValues = 1e7;  // largest number of values of one word, wh
 
 /// Reads values. Returns the fault; empty: there is none.
 std::string read_values(const std::string& text, double most, std::vector<std::string>& values) {
-  std::set<std::string> known;
+  std::map<std::string, std::string> known;  // numbers by their value: 0.1 and 0.10 are one
   for (const std::string& part : split(text, ',')) {
     std::vector<std::string> found{part};
     if (part.find(':') != part.npos) {
@@ -38,7 +38,11 @@ std::string read_values(const std::string& text, double most, std::vector<std::s
       // One of the brackets alone: a distribution by another name, or among values.
       const bool bracket = (value.find('(') == value.npos) != (value.find(')') == value.npos);
       if (value.empty() || value.find('/') != value.npos || bracket) return kForm;
-      if (!known.insert(value).second) return "has " + value + " twice";
+      double number = 0.0;
+      const auto [same, added] =
+          known.emplace(read_number(value, number) ? short_digits(number, 17) : value, value);
+      if (!added)
+        return "has " + value + " twice" + (same->second == value ? "" : ", first as " + same->second);
       values.push_back(value);
     }
     if (static_cast<double>(values.size()) > most) return "has more values than " + short_digits(most, 7);

@@ -36,6 +36,8 @@ class ControlSession {
   /// From time t over the communication step h [s], with the inputs at both ends; outputs at t + h.
   virtual void step(double t, double h, std::span<const double> before, std::span<const double> inputs,
                     std::span<double> outputs) = 0;
+  /// What it has to say although it went on, a sentence without full stop, which becomes a warning of the run.
+  virtual std::string warning() const { return {}; }
 };
 
 class SampledController : public Element {

@@ -29,7 +29,8 @@ std::optional<std::string> why_not_friction(const System& system, const std::str
   if (system.frictions().empty()) return std::nullopt;
   const ElementInstance& first = system.element_instances()[idx(index(system.frictions().front().element))];
   return first.name + " is " + with_article(first.element->type()) + ", which sticks and slips: " + what +
-         " does not take dry friction; take exact propagation (method = \"exact\")";
+         " does not take dry friction; take exact propagation from rest (method = \"exact\", start = "
+         "\"rest\")";
 }
 
 void refuse_friction(const System& system, const std::string& what) {

@@ -83,6 +83,7 @@ class ExactRun final : public StepMotion {
     so_far();
     const double rounding = friction_.energy_of_rounding(options_.t_end - options_.t_start);
     if (!(std::abs(summary_.energy.worst_imbalance) <= rounding)) judge_energy(summary_, allowed_imbalance_);
+    controls_.warn(summary_);
     return summary_;
   }
 
@@ -114,7 +115,6 @@ class ExactRun final : public StepMotion {
 
  private:
   bool running() const { return summary_.status == RunStatus::success; }
-
   /// A breakpoint, the end, or a knot of a law's offset: a step's end is evaluated ahead of it, the next start behind it.
   Stop next_stop(const Stops& stops) const {
     const Stop stop = stops.after(now_.state.t);

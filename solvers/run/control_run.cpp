@@ -65,6 +65,12 @@ void ControlRun::sample(const Assembler& assembler, const State& state) {
       ask(c, assembler, state, false);
 }
 
+void ControlRun::warn(RunSummary& summary) const {
+  for (const Controlled& c : all_)
+    if (const std::string warning = c.session ? c.session->warning() : ""; !warning.empty())
+      summary.warnings.push_back(c.name + ": " + warning);
+}
+
 void ControlRun::ask(Controlled& c, const Assembler& assembler, const State& state, bool first) {
   const std::vector<double> before = c.inputs, outputs = c.outputs;
   for (std::size_t i = 0; i < c.signals.size(); ++i) {

@@ -10,6 +10,7 @@ namespace drev {
 
 class ControlSession;
 class SampledController;
+struct RunSummary;
 
 class ControlRun {
  public:
@@ -28,6 +29,8 @@ class ControlRun {
   /// Asks the controllers whose communication point the state's time is; the assembler stands ahead of it. Throws
   /// SolverError with time and controller.
   void sample(const Assembler& assembler, const State& state);
+  /// Adds what the controllers warn of.
+  void warn(RunSummary& summary) const;
 
  private:
   struct Controlled {

@@ -95,6 +95,7 @@ class Run final : public StepMotion {
     }
     judge_energy(summary_, options_.energy_tolerance);
     if (!control_) coarse_.warn(summary_, options_.step);
+    controls.warn(summary_);
     return summary_;
   }
 

@@ -1,9 +1,12 @@
 """FMUs of drev in FMPy, a client that shares no code with drev.   fmi_test.py DREV MODELS FOLDER [part]
 Says SKIPPED where FMPy is not installed."""
+import json
 import os
 import shutil
 import subprocess
 import sys
+import xml.etree.ElementTree
+import zipfile
 
 try:
     import fmpy
@@ -200,6 +203,11 @@ def tunable():
     fmu = Fmu(path)
     kinds = {v.name: v.variability for v in fmu.description.modelVariables if v.causality == "parameter"}
     assert kinds == {"speed_rpm": "fixed", "torque_Nm": "tunable", "backlash_um": "tunable"}, kinds
+    # Outputs may be read inside a step; a parameter's unit is spelled as a channel's.
+    declared = xml.etree.ElementTree.fromstring(zipfile.ZipFile(path).read("modelDescription.xml"))
+    inside = {v.get("name") for v in declared.iter("Float64") if v.get("intermediateUpdate") == "true"}
+    assert inside == {"wheel.angle_rad", "mesh.force_N"}, inside
+    assert "N m" in {v.get("unit") for v in declared.iter("Float64")}
     names = ["wheel.angle_rad", "mesh.force_N"]
     # An input torque of 20 N m more from the tenth step on is the same as the load's mean torque of 20 N m more.
     by_input = Fmu(export(model("gear_pair"), "by_input", "--torque", "wheel", "--record", ",".join(names)))
@@ -240,6 +248,20 @@ duration_s = 0.1
     assert len(slave.messages) == 1
     slave.terminate()
     slave.freeInstance()
+    # In a model, what the FMU answers with a warning is a warning of the run.
+    warned = write("warned.toml", """format = 1
+[nodes]
+a = {}
+[elements]
+J = { type = "inertia", node = "a", inertia_kg_m2 = 1 }
+f = { type = "fmu", node = "a", file = "rattle.fmu", step_s = 0.01, outputs = [{ variable = "disc.angle_rad" }] }
+[run]
+duration_s = 0.02
+""")
+    for options in ((), ("--step", "1e-3")):
+        done = subprocess.run([DREV, "run", warned, "--json", *options], check=True, capture_output=True, text=True)
+        said = json.loads(done.stdout)["warnings"]
+        assert any("f: rattle.fmu: fmi3ExitInitializationMode answered 'warning'; the FMU logged:" in text for text in said), said
 
 
 def hostile():

@@ -91,6 +91,8 @@ class FmuSession final : public ControlSession {
     get(outputs);
   }
 
+  std::string warning() const override { return instance_->warning(); }
+
  private:
   void set(std::span<const double> inputs) {
     for (std::size_t i = 0; i < inputs.size(); ++i)

@@ -84,6 +84,11 @@ class Instance : public ImportedInstance {
     running_ = true;
   }
 
+  std::string warning() const override {
+    if (warnings_ < 2) return warning_;
+    return warning_ + "; it was the first of " + std::to_string(warnings_) + " warnings";
+  }
+
  protected:
   /// Calls a function of the library by its name without prefix and judges its status. The arguments' types are those of
   /// the standard's prototype. about: the variable or time, for the message.
@@ -98,12 +103,19 @@ class Instance : public ImportedInstance {
   }
 
   void judge(int status, const std::string& name, const std::string& about) {
-    if (status <= kWarning) return;
+    if (status <= kWarning) {
+      if (status == kWarning && ++warnings_ == 1)
+        warning_ = fmu_->name() + ": " + answer(name, about, "warning") + log_.take();
+      return;
+    }
     failed_ = true;
     if (status == kFatal) self_ = nullptr;  // nothing may be called any more
     const char* words[] = {"discard", "error", "fatal error", "pending"};
-    fail(name + (about.empty() ? "" : " (" + about + ")") + " answered '" +
-         (status <= 5 ? words[status - 2] : std::to_string(status)) + "'");
+    fail(answer(name, about, status <= 5 ? words[status - 2] : std::to_string(status)));
+  }
+
+  static std::string answer(const std::string& name, const std::string& about, const std::string& word) {
+    return name + (about.empty() ? "" : " (" + about + ")") + " answered '" + word + "'";
   }
 
   void end() {
@@ -122,6 +134,8 @@ class Instance : public ImportedInstance {
   Log log_;
   void* self_ = nullptr;
   bool running_ = false, failed_ = false;
+  long warnings_ = 0;
+  std::string warning_;  // the first
 };
 
 class Instance2 final : public Instance {

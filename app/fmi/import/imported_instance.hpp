@@ -22,6 +22,8 @@ class ImportedInstance {
   virtual void exit_initialization() = 0;
   /// A step from t over h [s].
   virtual void step(double t, double h) = 0;
+  /// The first call that the FMU answered with a warning, with what it logged, and how many there were; empty: none.
+  virtual std::string warning() const = 0;
 };
 
 std::unique_ptr<ImportedInstance> instantiate(std::shared_ptr<const UnpackedFmu> fmu,

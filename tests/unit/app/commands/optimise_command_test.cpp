@@ -3,9 +3,11 @@
 #include <drev/core/units.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <complex>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "tests/catch.hpp"
 #include "tests/unit/app/process.hpp"
@@ -297,4 +299,28 @@ TEST_CASE("A search for the largest value at a bound tries the bound, and no val
   CHECK(contains(text.out, "k_Nm_per_rad=166.66666666666666"));
   CHECK_FALSE(contains(text.out, "failed"));
   CHECK(contains(text.out, "another --seed finds more"));
+}
+
+TEST_CASE("An optimisation that is interrupted among all combinations says so, and claims no search") {
+  const TemporaryFolder folder;
+  const Words words{"optimise",   absorber_file(folder),
+                    "--vary",     "k_Nm_per_rad=100:1:1000",
+                    "--minimise", "max_torque_Nm",
+                    "--step",     "1e-6",
+                    "--duration", "1",
+                    "--variants", "1000"};
+  drev::test::Outcome outcome;
+  // A signal before the computation has begun is answered by another sentence.
+  for (int wait = 200; wait < 20000; wait *= 2) {
+    const drev::test::Process process(words);
+    std::this_thread::sleep_for(std::chrono::milliseconds(wait));
+    process.send(SIGINT);
+    outcome = process.wait();
+    if (!contains(outcome.err, "nothing is written")) break;
+  }
+  INFO(outcome.out << outcome.err);
+  CHECK(outcome.exit_code == 130);
+  CHECK(contains(outcome.err, "drev: interrupted; the optimum is that of the "));
+  CHECK(contains(outcome.out, "interrupted before"));
+  CHECK_FALSE(contains(outcome.out, "search"));
 }

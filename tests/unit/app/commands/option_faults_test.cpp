@@ -39,6 +39,14 @@ const std::vector<OptionFault>& faults() {
       // options
       {{"run", "camshaft", "--stp", "1e-3"}, {"--stp", "drev run", "did you mean '--step'?"}},
       {{"run", "camshaft", "--count", "3"}, {"--count", "drev modes has it"}},
+      {{"run", "camshaft", "--durat", "1"}, {"did you mean '--duration'?"}},
+      {{"help", "run"}, {"did you mean 'drev run --help'?"}},
+      {{"study", "--json"}, {"--json, is no option of drev study"}},
+      {{"run", "gear_drive", "--vary", "backlash_mm=0.1,0.2", "--table", "--energy", "--out", "no_folder"},
+       {"--energy, is for single runs"}},
+      {{"run", "gear_drive", "--vary", "backlash_mm=0.1,0.10", "--out", "no_folder"},
+       {"has 0.10 twice, first as 0.1"}},
+      {{"run", "camshaft", "camshaft", "--out", "no_folder"}, {"camshaft, is given twice"}},
       {{"run", "camshaft", "--step"}, {"--step"}},
       {{"run", "camshaft", "--step", "1e-5", "--step", "1e-6"}, {"--step", "1e-6", "already"}},
       {{"run", "camshaft", "--out", "--json"}, {"--out", "needs a value"}},
@@ -168,6 +176,12 @@ TEST_CASE("All faults of one command line are listed at once") {
        {"--stp", "--step = 1ms", "--every = -1 s", "alpha = 2", "cylinders = 5", "drve", "backlash_mm = x",
         "end.angle", "mesh_9.force_N", "--every, needs", "--record, needs"})
     CHECK(contains(run.err, part));
+}
+
+TEST_CASE("An option that is near to none is compared with none") {
+  CHECK_FALSE(contains(drev_command({"modes", "camshaft", "--number", "3"}).err, "did you mean"));
+  CHECK_FALSE(contains(drev_command({"run", "camshaft", "--version"}).err, "did you mean"));
+  CHECK_FALSE(contains(drev_command({"study", "--help"}).out, "--json"));
 }
 
 TEST_CASE("Only the option that is wrong is blamed") {

@@ -187,6 +187,19 @@ TEST_CASE("Each variant that failed has its own status and reason") {
   CHECK(failures[0].at("status") == "energy_error");
 }
 
+TEST_CASE("A quiet table says on standard error which variants failed, also when it is complete already") {
+  const TemporaryFolder folder;
+  Words words = study((folder / "r").string(), "0.1,20", {"--quiet"});
+  const auto run = drev_command(words);
+  CHECK(run.exit_code == 2);
+  CHECK(run.out.empty());
+  CHECK(contains(run.err, "variant 3 (backlash_mm=20, engine_rpm=700): bad_input: gear_drive/settings"));
+  words.emplace_back("--resume");
+  const auto again = drev_command(words);
+  CHECK(again.exit_code == 2);
+  CHECK(contains(again.err, "not all of its variants succeeded"));
+}
+
 TEST_CASE("A variant has the warnings that a run of its own would have") {
   // A disc rattles in a gap of 20 mrad without ever repeating.
   const TemporaryFolder folder;

@@ -111,6 +111,19 @@ TEST_CASE("A fault of the train hides none of [run] and [class]") {
       {"m/s: stiffness = -5"});
 }
 
+TEST_CASE("What an S-N line without its range has else is a fault, which a check also gives as JSON") {
+  const std::string text = train(
+      "[class.sections]\ns = { diameter_mm = 5, sn_cycles = 1e6, sn_slope = 3 }\n"
+      "[run]\nduration_s = 1\n");
+  require_faults(text, {"class.sections.s.sn_cycles, has no effect: an S-N line needs an sn_range",
+                        "class.sections.s.sn_slope, has no effect"});
+  const auto run = checked(text, {"--json"});
+  CAPTURE(run.out);
+  CHECK(run.exit_code == 2);
+  CHECK(contains(run.out, "\"faults\""));
+  CHECK(contains(run.out, "has no effect: an S-N line needs an sn_range"));
+}
+
 TEST_CASE("A firing order that cannot be read hides no fault of its engine") {
   require_faults(
       train("e = { type = \"engine_cylinders\", nodes = [\"a\", \"b\"], bore_mm = -1, stroke_mm = 100, "
@@ -232,6 +245,7 @@ TEST_CASE("What a run with output would refuse is wrong with its file") {
         "m.toml:11:10: run: step = 0.9 s, is above the stability limit of rk4");
   fault("static_turn_deg = -5", "run.static_turn_deg, must be >= 0");
   fault("out = \"\"", "run.out, must be the name of a folder");
+  fault("record = [\"a.angle_rad\", \"a.angle_rad\"]", "run.record, a.angle_rad is named twice");
   CHECK(checked(train("[run]\nevery_s = 0.5\nmethod = \"rk4\"\nstep_s = 0.01\n")).exit_code == 0);
 }
 

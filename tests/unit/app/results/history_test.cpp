@@ -149,6 +149,35 @@ TEST_CASE("A history.h5 that does not fit on the disk leaves the rest") {
   CHECK_FALSE(std::filesystem::exists(folder / "r/history.h5"));
 }
 
+TEST_CASE("Channels of which HDF5 would make one path are refused before the run, by either of its files") {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "m.toml").string(), out = (folder / "r").string();
+  const auto write = [&](const std::string& name) {
+    std::ofstream(file) << "format = 1\n[parameters]\nk = 1\n[nodes]\nx = {}\n'" + name +
+                               "' = {}\n[elements]\nJ = { type = 'inertia', node = 'x', inertia_kg_m2 = 1 }\n"
+                               "I = { type = 'inertia', node = '" +
+                               name + "', inertia_kg_m2 = 1 }\nk = { type = 'shaft_spring', nodes = ['x', '" +
+                               name + "'], stiffness_Nm_per_rad = 'k' }\n[run]\nduration_s = 0.1\n";
+  };
+  const auto refused = [&](const std::string& name, const std::vector<std::string>& more,
+                           const std::string& why) {
+    write(name);
+    std::vector<std::string> words{"run", file, "--record", "*.angle_rad", "--out", out};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto run = drev_command(words);
+    INFO(run.err);
+    CHECK(run.exit_code == 2);
+    CHECK(contains(run.err, why));
+    CHECK_FALSE(std::filesystem::exists(out));
+  };
+  const std::string one = "' are one path in HDF5, where a '/' makes groups: rename one of them";
+  refused("/x", {"--format", "hdf5"}, "'x.angle_rad' and '/x.angle_rad" + one);
+  refused("//x", {"--vary", "k=1,2", "--table"}, "'x.angle_rad.max' and '//x.angle_rad.max" + one);
+  refused("time_s/x", {"--format", "hdf5"}, "'time_s' would be the group of 'time_s/x.angle_rad' in HDF5");
+  write("u/x");
+  CHECK(drev_command({"run", file, "--out", out, "--format", "hdf5"}).exit_code == 0);
+}
+
 TEST_CASE("What someone else has put in the way of a file is neither followed nor written") {
   const std::string name = GENERATE("history.partial.csv", "summary.partial.json",
                                     "summary.partial.json.next", "report.partial.html", "history.partial.h5");
