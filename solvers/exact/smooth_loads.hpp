@@ -1,13 +1,14 @@
 #pragma once
 /// SmoothLoads: loads without straight stretches that can only be called (functions), for LoadSeries.
 ///
-/// Over a step such a load acts by its tangent at the start, torque + slope (theta - theta_0), whose slope goes to
-/// the stiffness; what it differs from that along the path is taken at Gauss's nodes and projected
-/// (legendre_projection.hpp). A load that follows no motion is taken there once a step.
+/// Over a step such a load acts by its tangent at the start, torque + slope (theta - theta_0) + speed_slope (w - w_0), whose slopes
+/// go to stiffness and damping (that by the speed where the node is an unknown of its own); what it differs from that along the path
+/// is taken at Gauss's nodes and projected (legendre_projection.hpp). A load that follows no motion is taken there once a step.
 ///
 /// Between the nodes a load may do what none of them sees: a motor's curve of 1 rad/s in a train that swings by 100, a pulse. A load that
 /// bounds its slopes (Load::steepest) is looked at between two points wherever it may change by far more than they show, until it
-/// cannot, or what it may do moves nothing; any other is looked at once between any two nodes.
+/// cannot, or what it may do moves nothing; any other is looked at once between any two nodes. All are looked at where angle or
+/// speed turn back between the points, beyond which a kink may be passed there and back.
 ///
 /// A load that says its knots (KnottedLoad: an engine's gas pressure) passes them inside the step: the path between two
 /// of them has Gauss's nodes of its own, and what the load differs from its tangent is projected apart from the smooth
