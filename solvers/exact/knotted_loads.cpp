@@ -189,11 +189,7 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   bool knots = !(l.angle + high < l.piece.high && l.angle + low > l.piece.low);
   double end = 0.0;
   if (knots && monotone) {
-    const auto degree = idx(std::max(series.degree(), 2));
-    turn_.assign(degree + 1, 0.0);
-    if (l.feedback)
-      for (int k = 1; k <= series.degree(); ++k) turn_[idx(k)] = l.coeff * series.coefficient(k, l.row);
-    for (std::size_t k = 1; k < 3; ++k) turn_[k] += l.ratio * phi_[k];
+    turn_ = angle_terms(l, series);
     for (const double term : turn_) end += term;
     knots = rises ? end > ahead : end < ahead;
   }

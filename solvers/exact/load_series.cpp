@@ -185,21 +185,29 @@ double LoadSeries::size_of_force(int row) const {
 }
 
 std::optional<double> LoadSeries::find_rounding(const ProjectedLaws& laws) {
-  std::optional<double> found;
-  const auto look = [&](int row, double off_at_ends, bool follows) {
-    const double most = follows ? kMostOfMoved : kMostRounding;
+  // The rest is that of all forces on a row: one that follows the motion may be its cause.
+  row_rest_.assign(idx(stride_), {});
+  const auto note = [&](int row, double off_at_ends, bool follows) {
+    RowRest& all = row_rest_[idx(row)];
     const auto [smooth, rough] = rest_of_force(row, off_at_ends);
-    const double tail = std::max(smooth, rough);
+    all.tail = std::max({all.tail, smooth, rough});
+    all.follows = all.follows || follows;
+    all.acts = true;
+  };
+  smooth_.for_rows(note);
+  laws.for_rows(note);
+  std::optional<double> found;
+  for (int row = 0; row < stride_; ++row) {
+    const auto [tail, follows, acts] = row_rest_[idx(row)];
+    if (!acts) continue;
     double& before = too_large_[idx(row)];
     if (tried_ > 0.0 && h_ <= kMuchShorter * tried_ && tail > rounding_[idx(row)] &&
-        tail >= kSameRest * before && tail <= most * size_of_force(row)) {
+        tail >= kSameRest * before && tail <= (follows ? kMostOfMoved : kMostRounding) * size_of_force(row)) {
       rounding_[idx(row)] = kRoundingVaries * tail;
       found = tried_;
     }
     before = tail;
-  };
-  smooth_.for_rows(look);
-  laws.for_rows(look);
+  }
   tried_ = h_;
   return found;
 }

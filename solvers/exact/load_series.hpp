@@ -183,7 +183,12 @@ class LoadSeries {
   std::vector<double> rounding_;          // of forces by row, as far as it was found
   std::vector<double> too_large_;         // by row, what was too large to be left out of the last step tried,
   double tried_ = 0.0;                    // and its length [s]; 0: none from here
-  TaylorSeries::Norm per_reach_{};        // relative_move() over the row's reach, by kind
+  struct RowRest {
+    double tail = 0.0;
+    bool follows = false, acts = false;
+  };
+  std::vector<RowRest> row_rest_;   // of find_rounding()
+  TaylorSeries::Norm per_reach_{};  // relative_move() over the row's reach, by kind
   KinkMoments kinks_;
   /// A kink that leaves more of the motion than this inside the step ends it.
   static constexpr double kMostInside = 1e-6;

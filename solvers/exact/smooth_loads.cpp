@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/law/ranged.hpp"
+#include "solvers/contact/roots.hpp"
 #include "solvers/exact/expanded_loads.hpp"
 
 namespace drev {
@@ -63,6 +64,14 @@ void SmoothLoads::add_slopes(TaylorSeries& series) const {
   for (const Place& l : loads_) l.add_slopes(series, l.ratio * nominal_rate_);
 }
 
+std::vector<double> SmoothLoads::angle_terms(const Place& l, const TaylorSeries& series) const {
+  std::vector<double> terms(idx(std::max(series.degree(), 2)) + 1);
+  for (int k = 1; l.feedback && k <= series.degree(); ++k)
+    terms[idx(k)] = l.coeff * series.coefficient(k, l.row);
+  for (std::size_t k = 1; k < 3; ++k) terms[k] += l.ratio * phi_[k];
+  return terms;
+}
+
 SmoothLoads::Point SmoothLoads::look(const Place& l, double s, double along, double rate,
                                      LoadResponse& r) const {
   const double turn = (phi_[1] + phi_[2] * s) * s, deviation = l.coeff * along;
@@ -97,14 +106,23 @@ class SmoothLoads::Between {
   /// Looks where angle or speed turn back between the points: a kink may stand there, beyond all of them.
   void look_at_turns() {
     const auto& p = load_.points;
+    std::vector<double> path;  // of the angle, then of its rate, by powers of s
     for (const auto of : {&Point::angle, &Point::speed})
       for (std::size_t i = 1; i + 1 < p.size(); ++i) {
         const double before = (p[i].*of - p[i - 1].*of) / (p[i].s - p[i - 1].s),
                      behind = (p[i + 1].*of - p[i].*of) / (p[i + 1].s - p[i].s);
         if (!(before * behind < 0.0)) continue;
-        // The rates of a parabola through the three points.
+        if (path.empty()) path = of_.angle_terms(load_, series_);
+        if (of == &Point::speed && !std::exchange(rates_, true)) differentiate(path);
+        // Newton's method from the top of a parabola through the three points.
         const double part = before / (before - behind);
-        take(look(0.5 * (p[i].s + (1.0 - part) * p[i - 1].s + part * p[i + 1].s)));
+        double s = 0.5 * (p[i].s + (1.0 - part) * p[i - 1].s + part * p[i + 1].s);
+        for (int k = 0; k < kTurnNewton; ++k) {
+          const double next = s - polynomial_slope(path, s) / polynomial_curvature(path, s);
+          if (!(next > p[i - 1].s && next < p[i + 1].s)) break;
+          s = next;
+        }
+        take(look(s));
       }
   }
 
@@ -129,7 +147,7 @@ class SmoothLoads::Between {
  private:
   // How much more than its points show a load may change between them; how often a part is halved; looks at most.
   static constexpr double kMore = 8.0;
-  static constexpr int kDeepest = 14, kMostLooks = 400;
+  static constexpr int kDeepest = 14, kMostLooks = 400, kTurnNewton = 3;
   // The path between points comes beyond them, relative to what they span.
   static constexpr double kBeyond = 0.3;
 
@@ -172,6 +190,11 @@ class SmoothLoads::Between {
     return !(may <= kMore * shown);
   }
 
+  static void differentiate(std::vector<double>& terms) {
+    for (std::size_t k = 1; k < terms.size(); ++k) terms[k - 1] = static_cast<double>(k) * terms[k];
+    terms.pop_back();
+  }
+
   void divide(const Point& a, const Point& b, int depth) {
     if (looks_ >= kMostLooks) return;
     const Point middle = take(look(0.5 * (a.s + b.s)));
@@ -187,6 +210,7 @@ class SmoothLoads::Between {
   NodeFit fit_;  // of the load alone
   double off_ = 0.0;
   int looks_ = 0;
+  bool rates_ = false;  // look_at_turns() has come to the rates
 };
 
 double SmoothLoads::differ_called(Place& l, const TaylorSeries& series, NodeForces& forces) const {

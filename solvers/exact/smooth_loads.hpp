@@ -132,6 +132,8 @@ class SmoothLoads {
   double nominal_speed_of(const Place& load, double s) const {
     return load.ratio * (phi_[1] + 2.0 * phi_[2] * s) / h_;
   }
+  /// Of the load's angle over the step by powers of s, less that at its start [rad].
+  std::vector<double> angle_terms(const Place& load, const TaylorSeries& series) const;
   Point look(const Place& load, double s, double along, double rate, LoadResponse& response) const;
 
   const System& system_;

@@ -268,3 +268,33 @@ TEST_CASE("A motion between the ends of a step has its kinks where bounds of the
   CHECK(recorder.samples(1)[1] == Approx(-5.576400451949589).epsilon(1e-9));
   CHECK(recorder.samples(2)[1] == Approx(7.652795875354345).epsilon(1e-10));
 }
+
+TEST_CASE("A kink over the speed beside loads of time on the same node is not taken for rounding") {
+  // Short circuits of two generators, and a motor that pulls no harder below zero speed, which the node passes again and again.
+  Model m("short circuit");
+  m.add_node("n0");
+  m.add_node("n1");
+  m.add<Inertia>("J0", {"n0"}, {.inertia = 1.0});
+  m.add<Inertia>("J1", {"n1"}, {.inertia = 0.1});
+  m.add<ShaftSpring>("shaft", {"n0", "n1"}, {.stiffness = 2865.0});
+  for (const double torque : {100.0, 10.0})
+    m.add<Generator>("generator_" + std::to_string(static_cast<int>(torque)), {"n0"},
+                     {.torque = torque,
+                      .synchronous_stiffness = 1000.0,
+                      .fault_time = 0.5,
+                      .fault_torque = 500.0,
+                      .fault_torque_double = 200.0,
+                      .fault_decay = 0.05});
+  m.add<TorqueCurve>("motor", {"n0"},
+                     {.speeds = {rpm(0.0), rpm(1000.0), rpm(1450.0), rpm(1500.0), rpm(1550.0)},
+                      .torques = {120.0, 150.0, 260.0, 0.0, -260.0}});
+  for (const double tolerance : {1e-10, 1e-12, 1e-13}) {
+    INFO(tolerance);
+    const State state = after(m, 1.0, tolerance, 5000);
+    // SciPy's DOP853 at a relative tolerance of 1e-13, split where the speed is zero.
+    CHECK(state.z[0] == Approx(-0.05530810797688894).epsilon(1e-9));
+    CHECK(state.z[1] == Approx(-0.03309735453031989).epsilon(1e-9));
+    CHECK(state.v[0] == Approx(2.0908210156322884).epsilon(1e-9));
+    CHECK(state.v[1] == Approx(5.382868167441675).epsilon(1e-9));
+  }
+}
