@@ -189,7 +189,7 @@ double SmoothLoads::differ_knotted(Place& l, const TaylorSeries& series, NodeFor
   bool knots = !(l.angle + high < l.piece.high && l.angle + low > l.piece.low);
   double end = 0.0;
   if (knots && monotone) {
-    turn_ = angle_terms(l, series);
+    find_angle(l, series, turn_);
     for (const double term : turn_) end += term;
     knots = rises ? end > ahead : end < ahead;
   }

@@ -32,7 +32,6 @@ void SmoothLoads::move(const Assembler& assembler, const Vector& z, const Vector
   t_ = assembler.time();
   const MotionPoint& nominal = assembler.nominal();
   nominal_ = nominal.value;
-  nominal_rate_ = nominal.rate;
   find_loads(nominal);
   for (Place& l : loads_) {
     l.move(system_, nominal, z, v);
@@ -48,7 +47,6 @@ void SmoothLoads::move(const Assembler& assembler, const Vector& z, const Vector
 void SmoothLoads::move_as(const SmoothLoads& other) {
   t_ = other.t_;
   nominal_ = other.nominal_;
-  nominal_rate_ = other.nominal_rate_;
   loads_ = other.loads_;
   found_ = other.found_;
   constant_ = other.constant_;
@@ -61,15 +59,14 @@ void SmoothLoads::add_to(double h, const std::array<double, 3>& phi, double* p) 
 }
 
 void SmoothLoads::add_slopes(TaylorSeries& series) const {
-  for (const Place& l : loads_) l.add_slopes(series, l.ratio * nominal_rate_);
+  for (const Place& l : loads_) l.add_slopes(series, nominal_speed_of(l, 0.0));
 }
 
-std::vector<double> SmoothLoads::angle_terms(const Place& l, const TaylorSeries& series) const {
-  std::vector<double> terms(idx(std::max(series.degree(), 2)) + 1);
+void SmoothLoads::find_angle(const Place& l, const TaylorSeries& series, std::vector<double>& terms) const {
+  terms.assign(idx(std::max(series.degree(), 2)) + 1, 0.0);
   for (int k = 1; l.feedback && k <= series.degree(); ++k)
     terms[idx(k)] = l.coeff * series.coefficient(k, l.row);
   for (std::size_t k = 1; k < 3; ++k) terms[k] += l.ratio * phi_[k];
-  return terms;
 }
 
 SmoothLoads::Point SmoothLoads::look(const Place& l, double s, double along, double rate,
@@ -106,14 +103,16 @@ class SmoothLoads::Between {
   /// Looks where angle or speed turn back between the points: a kink may stand there, beyond all of them.
   void look_at_turns() {
     const auto& p = load_.points;
-    std::vector<double> path;  // of the angle, then of its rate, by powers of s
-    for (const auto of : {&Point::angle, &Point::speed})
+    for (const auto of : {&Point::angle, &Point::speed}) {
+      std::vector<double> path;  // by powers of s
       for (std::size_t i = 1; i + 1 < p.size(); ++i) {
         const double before = (p[i].*of - p[i - 1].*of) / (p[i].s - p[i - 1].s),
                      behind = (p[i + 1].*of - p[i].*of) / (p[i + 1].s - p[i].s);
         if (!(before * behind < 0.0)) continue;
-        if (path.empty()) path = of_.angle_terms(load_, series_);
-        if (of == &Point::speed && !std::exchange(rates_, true)) differentiate(path);
+        if (path.empty()) {
+          of_.find_angle(load_, series_, path);
+          if (of == &Point::speed) differentiate(path);
+        }
         // Newton's method from the top of a parabola through the three points.
         const double part = before / (before - behind);
         double s = 0.5 * (p[i].s + (1.0 - part) * p[i - 1].s + part * p[i + 1].s);
@@ -124,6 +123,7 @@ class SmoothLoads::Between {
         }
         take(look(s));
       }
+    }
   }
 
   /// Looks wherever the load may do what the nodes do not show. False: nobody knows what it may do.
@@ -210,7 +210,6 @@ class SmoothLoads::Between {
   NodeFit fit_;  // of the load alone
   double off_ = 0.0;
   int looks_ = 0;
-  bool rates_ = false;  // look_at_turns() has come to the rates
 };
 
 double SmoothLoads::differ_called(Place& l, const TaylorSeries& series, NodeForces& forces) const {
@@ -288,14 +287,14 @@ double SmoothLoads::slope_work(const TaylorSeries& series, double s, const Vecto
     const double turn = l.coeff * (l.along(system_, end) - series.coefficient(0, l.row));
     sum += 0.5 * l.slope * turn * turn;
     if (l.speed_slope == 0.0) continue;
-    turn_.resize(idx(series.degree()) + 1);
-    for (int k = 0; k <= series.degree(); ++k) turn_[idx(k)] = l.coeff * series.coefficient(k, l.row);
-    NodeValues deviation;
-    find_at_nodes(turn_, s, deviation);
-    const double first = l.speed - l.ratio * nominal_rate_;
+    find_angle(l, series, turn_);
+    NodeValues angle;
+    find_at_nodes(turn_, s, angle);
+    const GaussRule& rule = gauss_rule();
+    const double first = l.speed - nominal_speed_of(l, 0.0);
     for (std::size_t q = 0; q < GaussRule::kNodes; ++q) {
-      const double rate = deviation.slope[q] / h_;
-      sum += h_ * s * gauss_rule().weight[q] * l.speed_slope * (rate - first) * rate;
+      const double rate = angle.slope[q] / h_ - nominal_speed_of(l, s * rule.s[q]);
+      sum += h_ * s * rule.weight[q] * l.speed_slope * (rate - first) * rate;
     }
   }
   return sum;

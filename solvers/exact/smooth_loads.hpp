@@ -132,8 +132,8 @@ class SmoothLoads {
   double nominal_speed_of(const Place& load, double s) const {
     return load.ratio * (phi_[1] + 2.0 * phi_[2] * s) / h_;
   }
-  /// Of the load's angle over the step by powers of s, less that at its start [rad].
-  std::vector<double> angle_terms(const Place& load, const TaylorSeries& series) const;
+  /// Terms of the load's angle over the step by powers of s, less that at its start [rad].
+  void find_angle(const Place& load, const TaylorSeries& series, std::vector<double>& terms) const;
   Point look(const Place& load, double s, double along, double rate, LoadResponse& response) const;
 
   const System& system_;
@@ -150,7 +150,7 @@ class SmoothLoads {
   NodeForces forces_, known_;              // differences, and those of loads that follow no motion
   std::vector<double> path_, rate_;        // by node, then row
   std::array<double, 3> phi_{};
-  double t_ = 0.0, h_ = 0.0, nominal_ = 0.0, nominal_rate_ = 0.0;
+  double t_ = 0.0, h_ = 0.0, nominal_ = 0.0;
 };
 
 }  // namespace drev

@@ -252,3 +252,47 @@ TEST_CASE(
       CHECK(state.v[0] == Approx(speed).epsilon(std::max(10.0 * tolerance, 1e-9)));
     }
 }
+
+TEST_CASE(
+    "A drag that is called takes few more steps than one in the matrices, beside masses of every kind") {
+  // A light disc, which the drag slows at c/J = 1e4 1/s; and a distributed shaft, whose lightest mass is far from the drag's node.
+  const auto train = [](bool light, bool called) {
+    Model m("drag");
+    for (const char* node : {"a", "b"}) {
+      m.add_node(node);
+      m.set_initial(node, 0.0, 100.0);
+    }
+    m.add<Inertia>("J_a", {"a"}, {.inertia = light ? 1.0 : 10.0});
+    m.add<Inertia>("J_b", {"b"}, {.inertia = light ? 1e-4 : 0.1});
+    if (light)
+      m.add<ShaftSpring>("shaft", {"a", "b"}, {.stiffness = 1e4});
+    else
+      m.add<DistributedShaft>(
+          "shaft", {"a", "b"},
+          {.shear_modulus = 80e9, .density = 7850.0, .outer_diameter = 0.02, .length = 1.0, .segments = 10});
+    const NodeRef node = light ? "b" : "a";
+    if (called)
+      m.add<TorqueCurve>("drag", {node}, {.speeds = {-1000.0, 1000.0}, .torques = {1000.0, -1000.0}});
+    else
+      m.add<Dashpot>("drag", {node}, {.damping = 1.0});
+    return m.build();
+  };
+  for (const bool light : {true, false}) {
+    const System called = train(light, true), damper = train(light, false);
+    State state = State::initial(called), expected = State::initial(damper);
+    const double end = light ? 0.1 : 0.01;
+    const RunSummary run = propagate(called, {.tolerance = 1e-10, .t_end = end}, state),
+                     plain = propagate(damper, {.tolerance = 1e-10, .t_end = end}, expected);
+    INFO(light << ": " << run.brief_report() << "; " << plain.brief_report());
+    REQUIRE(run.ok());
+    REQUIRE(plain.ok());
+    CHECK(run.steps < 2 * plain.steps);
+    for (Eigen::Index i = 0; i < state.v.size(); ++i)
+      CHECK(std::abs(state.v[i] - expected.v[i]) <= 1e-8 * expected.v.cwiseAbs().maxCoeff());
+    if (!light) continue;
+    // SciPy's matrix exponential of the linear train.
+    CHECK(state.z[0] == Approx(9.517209731994035).epsilon(1e-10));
+    CHECK(state.v[0] == Approx(90.49278936299397).epsilon(1e-10));
+    CHECK(state.v[1] == Approx(90.50183864174686).epsilon(1e-10));
+  }
+}
